@@ -1,0 +1,1 @@
+//! GPU helpers: device, shaders, textures, buffers, readback, timers. Knows no scene.

@@ -1,0 +1,3 @@
+//! Rendering: a snapshot becomes pixels. Read [`frame`] first.
+
+pub mod frame;

@@ -1,0 +1,1 @@
+//! Rigid bodies: a rapier world anchored near the ship, alive only near the ground.

@@ -1,0 +1,10 @@
+//! The scene: everything that a frame is drawn from, as plain f32 data relative to the camera. No wgpu here.
+//!
+//! [`snapshot`] is the list; [`camera`] holds the projection; [`gpu_data`] the `#[repr(C)]` mirrors of WGSL structs.
+
+pub mod camera;
+pub mod gpu_data;
+pub mod snapshot;
+
+pub use camera::Camera;
+pub use snapshot::{AutoOr, Body, Force, Occluder, Ship, Snapshot, Star, Surface};

@@ -1,0 +1,16 @@
+//! The game: what is chosen. Ships, bodies, who eclipses whom, HUD, sound, saves, modes.
+//!
+//! Data flows one way: [`command::Commands`] → [`world::World`] → [`view`] snapshot → frame → target.
+//! Live play, headless runs, replays and pictures share one loop ([`session::Session`]) and differ in who makes the
+//! commands and what the target is.
+
+pub mod assets;
+pub mod command;
+pub mod hud;
+pub mod input;
+pub mod mode;
+pub mod save;
+pub mod session;
+pub mod sound;
+pub mod view;
+pub mod world;

@@ -1,0 +1,2 @@
+//! Syzygy.
+fn main() {}

@@ -1,0 +1,1 @@
+//! The session: the loop body that every mode calls.
