@@ -1,1 +1,10 @@
-//! view
+//! The view: where the eye is, and what a frame is drawn from.
+//!
+//! [`rig`] places the camera (cockpit, chase, free, map, a place on the ground); [`snapshot`] crosses from the World's f64 to
+//! the scene's f32, once. [`place`] reads the `--camera` argument. Not here: pixels.
+
+pub mod place;
+pub mod rig;
+pub mod snapshot;
+
+pub use rig::{CameraMode, Eye, Rig};

@@ -3,6 +3,7 @@
 //! Read [`World::tick`] for the order of a tick, [`system`] for what exists, [`ship`] for how a ship answers, and
 //! [`readout`] for what the World tells. Not here: anything drawn, heard or saved.
 
+pub mod eclipse;
 pub mod readout;
 pub mod ship;
 pub mod system;

@@ -1,0 +1,1 @@
+//! The snapshot of a World: f64 to f32, once.
