@@ -9,6 +9,7 @@ pub mod command;
 pub mod hud;
 pub mod input;
 pub mod mode;
+pub mod picture;
 pub mod save;
 pub mod session;
 pub mod sound;
