@@ -1,6 +1,33 @@
 //! Air: the layers of one atmosphere, how thick it is at an altitude, and how light crosses it.
+//!
+//! [`density`] is what drags (temperature, pressure, density); [`medium`] is what one sees (coefficients of scattering and
+//! absorption); [`reference`] integrates light through a medium in f64, slowly, and judges the tables and the shaders.
 
 pub mod density;
 pub mod medium;
+pub mod reference;
+mod us76;
 
-pub use medium::{Layer, Medium, Phase, Profile};
+pub use density::{Column, ColumnSpec};
+pub use medium::{Layer, Medium, MediumSpec, Phase, Profile};
+
+/// A value outside of what makes sense. The caller adds the file and the line.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("`{field}` is {found}: expected {expected}")]
+pub struct RangeError {
+    /// Key of the value, as the file spells it.
+    pub field: String,
+    /// What was found.
+    pub found: f64,
+    /// What was expected.
+    pub expected: String,
+}
+
+impl RangeError {
+    /// Adds an error unless `min ≤ found ≤ max`; NaN is always one.
+    pub(crate) fn check(errors: &mut Vec<Self>, field: &str, found: f64, min: f64, max: f64) {
+        if !(min..=max).contains(&found) {
+            errors.push(Self { field: field.to_owned(), found, expected: format!("a number from {min} to {max}") });
+        }
+    }
+}

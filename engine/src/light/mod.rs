@@ -1,1 +1,8 @@
 //! Light: the sun's disc, who hides it, and how the eye adapts.
+//!
+//! [`sun`] says how much light arrives and how large the disc is; [`occlusion`] which fraction of the disc is free
+//! (twin of `shaders/lib/occlusion.wgsl`); [`exposure`] turns luminances into an exposure.
+
+pub mod exposure;
+pub mod occlusion;
+pub mod sun;

@@ -1,1 +1,2 @@
 //! mode
+pub mod probe;

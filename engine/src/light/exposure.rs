@@ -1,0 +1,88 @@
+//! Exposure: what the eye or a camera makes of a scene's luminance. CPU twin of the formula in the exposure pass.
+//!
+//! EV100 is the exposure value at ISO 100: `EV100 = log₂(L·S/K)` with S = 100, K = 12.5 cd/m² (ISO 2720 reflected-light
+//! meters). The luminance that saturates is `1.2·2^EV100` with the lens vignetting q = 0.65 of ISO 12232, so the factor applied to
+//! cd/m² is its reciprocal [Lagarde & de Rousiers 2014, "Moving Frostbite to PBR", §5.1.2].
+
+/// Bins of the luminance histogram. Bin 0 counts what is darker than [`LOG2_MIN`] and is left out of the meter.
+pub const BINS: usize = 256;
+/// log₂ of the luminance (cd/m²) at the lower edge of bin 1: a moonless night's darkest ground.
+pub const LOG2_MIN: f32 = -20.0;
+/// log₂ of the luminance (cd/m²) at the upper edge of the last bin: above the sun's disc (1.9e9 cd/m²).
+pub const LOG2_MAX: f32 = 32.0;
+/// The meter averages log-luminance between these fractions of the counted pixels: black space and the sun's glint do not vote.
+pub const METER_RANGE: [f32; 2] = [0.5, 0.95];
+/// EV100 that a meter which sees nothing gives: a starry night.
+pub const EV100_DARK: f32 = -6.0;
+
+/// EV100 that places an average luminance (cd/m²) at middle grey.
+pub fn ev100_of_luminance(luminance_cd_m2: f32) -> f32 {
+    (luminance_cd_m2 * (100.0 / 12.5)).log2()
+}
+
+/// Factor from cd/m² to display-linear: 1 is where the sensor saturates.
+pub fn exposure_of_ev100(ev100: f32) -> f32 {
+    1.0 / (1.2 * ev100.exp2())
+}
+
+/// Bin of a luminance in cd/m²; 0 for what is too dark, negative or NaN.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+pub fn bin_of_luminance(luminance_cd_m2: f32) -> usize {
+    let x = (luminance_cd_m2.log2() - LOG2_MIN) / (LOG2_MAX - LOG2_MIN);
+    if x >= 0.0 { (1.0 + x * (BINS - 1) as f32).min((BINS - 1) as f32) as usize } else { 0 }
+}
+
+/// EV100 metered from a histogram of [`BINS`] bins (missing bins count as empty), before compensation.
+pub fn ev100_of_histogram(bins: &[u32]) -> f32 {
+    let lit = || bins.iter().copied().enumerate().take(BINS).skip(1);
+    let total: f32 = lit().map(|(_, n)| n as f32).sum();
+    let (low, high) = (total * METER_RANGE[0], total * METER_RANGE[1]);
+    let (mut before, mut weight, mut sum) = (0.0_f32, 0.0_f32, 0.0_f32);
+    for (i, n) in lit() {
+        let after = before + n as f32;
+        let inside = (after.min(high) - before.max(low)).max(0.0);
+        let log2 = LOG2_MIN + (i as f32 - 0.5) / (BINS - 1) as f32 * (LOG2_MAX - LOG2_MIN);
+        sum += inside * log2;
+        weight += inside;
+        before = after;
+    }
+    if weight > 0.0 { ev100_of_luminance((sum / weight).exp2()) } else { EV100_DARK }
+}
+
+/// EV100 after `dt_s` seconds of adaptation from `now` towards `goal`: exponential, quicker to bright light than to dark.
+pub fn adapt(now_ev100: f32, goal_ev100: f32, dt_s: f32) -> f32 {
+    let rate_per_s = if goal_ev100 > now_ev100 { 3.0 } else { 1.5 };
+    goal_ev100 + (now_ev100 - goal_ev100) * (-rate_per_s * dt_s.max(0.0)).exp()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_sunny_sixteen_rule() {
+        // A sunlit scene of about 4,000 cd/m² is EV 15: f/16 at 1/125 s.
+        assert!((ev100_of_luminance(4096.0) - 15.0).abs() < 1e-5);
+        assert!((exposure_of_ev100(15.0) * 1.2 * 32768.0 - 1.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn the_histogram_finds_the_luminance() {
+        for luminance in [1e-4_f32, 0.3, 4000.0, 1e6] {
+            let mut bins = vec![0; BINS];
+            bins[bin_of_luminance(luminance)] = 1000;
+            bins[0] = 1_000_000; // black sky does not vote
+            assert!((ev100_of_histogram(&bins) - ev100_of_luminance(luminance)).abs() < 0.11, "{luminance}");
+        }
+        assert_eq!(ev100_of_histogram(&[0; BINS]), EV100_DARK);
+        assert_eq!([f32::NAN, -1.0, 0.0, 1e-9].map(bin_of_luminance), [0; 4]);
+        assert_eq!(bin_of_luminance(f32::INFINITY), BINS - 1);
+    }
+
+    #[test]
+    fn adaptation_ends_at_its_goal() {
+        assert!((adapt(15.0, 0.0, 20.0)).abs() < 1e-3);
+        assert_eq!(adapt(3.0, 9.0, 0.0), 3.0);
+        assert!(adapt(0.0, 10.0, 0.1) > 10.0 - adapt(10.0, 0.0, 0.1));
+    }
+}
