@@ -1,4 +1,6 @@
 //! The readout: plain numbers about the ship, for the HUD, the sound and tests. Nothing here is kept or saved.
+//!
+//! What is told is here; how it is found is in [`super::observe`].
 
 use crate::command::{Guidance, Hold, Target};
 use engine::orbit::BodyId;

@@ -1,0 +1,97 @@
+//! The ship's surroundings at one instant: zenith, altitude, air, speed over the ground. Computed once and passed down.
+
+use crate::world::system::{Body, System};
+use engine::air::density::Sample;
+use engine::orbit::{BodyId, State};
+use engine::space::{Centred, Fixed, Icrf, Rotation};
+use engine::time::SimTime;
+use glam::DVec3;
+
+/// What is around a point that moves about a body. Vectors are in ICRF axes.
+#[derive(Clone, Copy, Debug)]
+pub struct Local<'a> {
+    /// What exists.
+    pub system: &'a System,
+    /// Now.
+    pub time: SimTime,
+    /// The dominating body's handle.
+    pub id: BodyId,
+    /// The dominating body.
+    pub body: &'a Body,
+    /// Position from the body's centre, m.
+    pub r: DVec3,
+    /// Inertial velocity, m/s.
+    pub v: DVec3,
+    /// Zenith.
+    pub up: DVec3,
+    /// Altitude above the datum, m.
+    pub altitude_m: f64,
+    /// Angular velocity of the body, rad/s.
+    pub spin: DVec3,
+    /// Velocity over the turning ground (and through the air, which turns with it), m/s.
+    pub v_surface: DVec3,
+    /// The body's axes.
+    pub icrf_from_fixed: Rotation<Icrf, Fixed>,
+    /// Air here; all zero where there is none.
+    pub air: Sample,
+}
+
+impl<'a> Local<'a> {
+    /// The surroundings of `state` about body `id` at `time`.
+    pub fn new(system: &'a System, time: SimTime, id: BodyId, state: &State<Centred>) -> Self {
+        let body = system.body(id);
+        let (r, v) = (state.position.0, state.velocity.0);
+        let spin = body.spin.angular_velocity(time).0;
+        let altitude_m = r.length() - body.radius_m;
+        Self {
+            system,
+            time,
+            id,
+            body,
+            r,
+            v,
+            up: r.normalize_or(DVec3::Z),
+            altitude_m,
+            spin,
+            v_surface: v - spin.cross(r),
+            icrf_from_fixed: body.spin.icrf_from_fixed(time),
+            air: body.air.as_ref().map(|a| a.column.at(altitude_m)).unwrap_or_default(),
+        }
+    }
+    /// Unit direction in the body's turning axes.
+    pub fn direction_fixed(&self) -> DVec3 {
+        self.icrf_from_fixed.inverse().raw(self.up)
+    }
+    /// Height of the ground (or water) below, above the datum, m.
+    pub fn ground_m(&self) -> f64 {
+        ground_m(self.body, self.direction_fixed())
+    }
+    /// Acceleration by the body's gravity, m/s².
+    pub fn gravity(&self) -> DVec3 {
+        gravity(self.body.gm_m3_s2, self.r)
+    }
+    /// Rate of climb, m/s.
+    pub fn vertical_m_s(&self) -> f64 {
+        self.v.dot(self.up)
+    }
+    /// Dynamic pressure, Pa.
+    pub fn dynamic_pressure_pa(&self) -> f64 {
+        0.5 * self.air.density_kg_m3 * self.v_surface.length_squared()
+    }
+}
+
+/// Acceleration at `r` by a point mass at the origin, m/s²; zero at the origin itself.
+pub fn gravity(gm: f64, r: DVec3) -> DVec3 {
+    let d2 = r.length_squared();
+    if d2 > 0.0 { r * (-gm / (d2 * d2.sqrt())) } else { DVec3::ZERO }
+}
+
+/// Height of what one stands or splashes on, above the datum, m; 0 for a body without ground.
+pub fn ground_m(body: &Body, direction_fixed: DVec3) -> f64 {
+    body.relief.as_ref().map_or(0.0, |relief| relief.surface_m(direction_fixed))
+}
+
+/// Altitude above which air does not act, m; 0 for an airless body.
+pub fn air_top_m(body: &Body) -> f64 {
+    body.air.as_ref().map_or(0.0, |a| a.column.top_m)
+}
