@@ -5,6 +5,7 @@
 //! commands and what the target is.
 
 pub mod assets;
+pub mod cli;
 pub mod command;
 pub mod hud;
 pub mod input;

@@ -1,0 +1,385 @@
+//! The command line: a contract that tests and tools outside this repository call.
+//!
+//! Every argument is checked here as far as it can be without opening a file; what it names is opened by the mode
+//! ([`crate::mode`]). Exit codes: 0 done, 1 an error, 2 wrong usage or no GPU, 3 a replay diverged.
+
+use clap::{Args, Parser, Subcommand};
+use engine::time::SimTime;
+use std::ffi::OsString;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// The start of a new flight where none is named.
+pub const DEFAULT_START: &str = "eclipse";
+
+/// A space simulator at real scale: fly from orbit to the surface of any world, and stand under the Moon's shadow.
+#[derive(Debug, Parser)]
+#[command(name = "syzygy", version, args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
+#[command(after_help = "Examples:\n  syzygy                          open the game\n  syzygy play --start eclipse     \
+    fly the eclipse of 2026-08-12\n  syzygy replay tests/replays/*.syzlog\n\nExit codes: 0 done, 1 error, 2 usage or no GPU, 3 a replay diverged")]
+pub struct Cli {
+    /// What to do; `play` when left out.
+    #[command(subcommand)]
+    pub mode: Option<Mode>,
+    /// Arguments of `play`, when no subcommand is named.
+    #[command(flatten)]
+    pub play: PlayArgs,
+}
+
+/// The subcommands.
+#[derive(Debug, Subcommand)]
+pub enum Mode {
+    /// Open the window and play
+    #[command(after_help = "Example:\n  syzygy play --start low-orbit --size 1920x1080")]
+    Play(PlayArgs),
+    /// Run the same session without a window
+    #[command(after_help = "Example:\n  syzygy headless --start eclipse --ticks 3600 --save out.syzsave --film saves/film")]
+    Headless(HeadlessArgs),
+    /// Play recorded flights and compare every state hash
+    #[command(
+        after_help = "Example:\n  syzygy replay --heavy tests/replays/*.syzlog\n\nExit codes: 0 the same, 1 cannot be played, 3 diverged"
+    )]
+    Replay(ReplayArgs),
+    /// Draw one picture (PNG as seen, EXR as scene-linear radiance before exposure)
+    #[command(after_help = "Example:\n  syzygy shot --start eclipse --camera chase --size 1280x720 --out shot.png --passes passes.json")]
+    Shot(ShotArgs),
+    /// Validate a system, body or mod folder and list every error
+    #[command(after_help = "Example:\n  syzygy check-assets mods/my-moon")]
+    CheckAssets(CheckAssetsArgs),
+    /// Ask the simulation for numbers, as JSON or CSV
+    #[command(subcommand, after_help = "Example:\n  syzygy probe air --body earth --altitude-m 0 11000 50000")]
+    Probe(Probe),
+}
+
+/// Where things are; the same for every mode.
+#[derive(Clone, Debug, Default, Args)]
+pub struct Places {
+    /// The assets folder (else $SYZYGY_ASSETS, beside the program, or in the checkout)
+    #[arg(long, value_name = "DIR", help_heading = "Places")]
+    pub assets: Option<PathBuf>,
+    /// Overlay a mod folder; may be given several times, the last one wins
+    #[arg(long, value_name = "DIR", help_heading = "Places")]
+    pub mods: Vec<PathBuf>,
+    /// Keep saves and settings here (else $SYZYGY_DATA_DIR, saves/ in a checkout, or the user's data folder)
+    #[arg(long, value_name = "DIR", help_heading = "Places")]
+    pub data_dir: Option<PathBuf>,
+    /// Ignore mods and the player's settings
+    #[arg(long, help_heading = "Places")]
+    pub safe_mode: bool,
+    /// Log more to stderr (-v info, -vv debug); $RUST_LOG overrides
+    #[arg(short, long, action = clap::ArgAction::Count, help_heading = "Places")]
+    pub verbose: u8,
+}
+
+/// Arguments of `play`.
+#[derive(Clone, Debug, Default, Args)]
+pub struct PlayArgs {
+    /// Skip the menu: a start by name, or a save file
+    #[arg(long, value_name = "NAME|FILE")]
+    pub start: Option<String>,
+    /// Graphics interface
+    #[arg(long, value_enum, value_name = "NAME")]
+    pub backend: Option<Backend>,
+    /// Size of the window, pixels
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    pub size: Option<(u32, u32)>,
+    #[command(flatten)]
+    /// Folders.
+    pub places: Places,
+}
+
+/// Graphics interfaces that can be asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Backend {
+    /// Vulkan
+    Vulkan,
+    /// Metal (macOS)
+    Metal,
+    /// Direct3D 12 (Windows)
+    Dx12,
+    /// OpenGL (ES) 3
+    Gl,
+}
+
+/// Arguments of `headless`.
+#[derive(Clone, Debug, Args)]
+pub struct HeadlessArgs {
+    /// A start by name, or a save file
+    #[arg(long, value_name = "NAME|FILE", default_value = DEFAULT_START)]
+    pub start: String,
+    /// Ticks of 1/60 s to run
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(0..=1_000_000_000))]
+    pub ticks: u64,
+    /// Take the commands from a recorded flight
+    #[arg(long, value_name = "LOG")]
+    pub commands: Option<PathBuf>,
+    /// Write the state at the end
+    #[arg(long, value_name = "OUT")]
+    pub save: Option<PathBuf>,
+    /// Record the flight as a replay log
+    #[arg(long, value_name = "LOG")]
+    pub record: Option<PathBuf>,
+    /// Write a film strip into this folder
+    #[arg(long, value_name = "DIR")]
+    pub film: Option<PathBuf>,
+    /// Graphics interface for the film
+    #[arg(long, value_enum, value_name = "NAME")]
+    pub backend: Option<Backend>,
+    /// Size of a picture of the film, pixels
+    #[arg(long, value_name = "WxH", value_parser = size, default_value = "640x360")]
+    pub size: (u32, u32),
+    #[command(flatten)]
+    /// Folders.
+    pub places: Places,
+}
+
+/// Arguments of `replay`.
+#[derive(Clone, Debug, Args)]
+pub struct ReplayArgs {
+    /// Recorded flights
+    #[arg(value_name = "FILE", required = true)]
+    pub files: Vec<PathBuf>,
+    /// Save and load the whole state in memory every K ticks
+    #[arg(long, value_name = "K", num_args = 0..=1, require_equals = true, default_missing_value = "97",
+        value_parser = clap::value_parser!(u32).range(1..))]
+    pub heavy: Option<u32>,
+    /// Print what the logs hold, as text, and play nothing
+    #[arg(long)]
+    pub dump: bool,
+    #[command(flatten)]
+    /// Folders.
+    pub places: Places,
+}
+
+/// Arguments of `shot`.
+#[derive(Clone, Debug, Args)]
+pub struct ShotArgs {
+    /// A start by name, or a save file
+    #[arg(long, value_name = "NAME|FILE", default_value = DEFAULT_START)]
+    pub start: String,
+    /// The moment, a Julian date of TDB (else the start's)
+    #[arg(long, value_name = "JD", value_parser = julian_date, allow_hyphen_values = true)]
+    pub tdb: Option<f64>,
+    /// The camera: `chase`, `cockpit`, `free` or `map`, with `key=value` settings after a colon
+    #[arg(long, value_name = "CAMERA", default_value = "chase")]
+    pub camera: String,
+    /// Size of the picture, pixels
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    pub size: (u32, u32),
+    /// The picture: .png as seen, or .exr as scene-linear radiance before exposure
+    #[arg(long, value_name = "F.png|F.exr", value_parser = picture)]
+    pub out: PathBuf,
+    /// Write what was drawn, what was skipped and why
+    #[arg(long, value_name = "F.json")]
+    pub passes: Option<PathBuf>,
+    /// Draw every pass, also those that the scene does not need
+    #[arg(long)]
+    pub force_passes: bool,
+    /// Graphics interface
+    #[arg(long, value_enum, value_name = "NAME")]
+    pub backend: Option<Backend>,
+    #[command(flatten)]
+    /// Folders.
+    pub places: Places,
+}
+
+/// Arguments of `check-assets`.
+#[derive(Clone, Debug, Args)]
+pub struct CheckAssetsArgs {
+    /// The folder to check (else the assets in use)
+    #[arg(value_name = "DIR")]
+    pub dir: Option<PathBuf>,
+    #[command(flatten)]
+    /// Folders.
+    pub places: Places,
+}
+
+/// What can be asked for.
+#[derive(Debug, Subcommand)]
+pub enum Probe {
+    /// Temperature, pressure and density of a body's air
+    #[command(after_help = "Example:\n  syzygy probe air --body earth --altitude-m 0 11000 50000")]
+    Air(ProbeAirArgs),
+    /// Height of the ground at points of a CSV file (columns lat_deg, lon_deg)
+    #[command(after_help = "Example:\n  syzygy probe height --body earth --points points.csv")]
+    Height(ProbeHeightArgs),
+    /// Position and velocity of a body, ICRF axes
+    #[command(after_help = "Example:\n  syzygy probe ephemeris --body moon --center earth --tdb 2461265.241041667")]
+    Ephemeris(ProbeEphemerisArgs),
+}
+
+/// Arguments that all probes share.
+#[derive(Clone, Debug, Args)]
+pub struct ProbeCommon {
+    /// The system, a folder of assets/systems
+    #[arg(long, value_name = "NAME", default_value = "sol")]
+    pub system: String,
+    /// Write here instead of stdout
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+    #[command(flatten)]
+    /// Folders.
+    pub places: Places,
+}
+
+/// Arguments of `probe air`.
+#[derive(Clone, Debug, Args)]
+pub struct ProbeAirArgs {
+    /// The body, by its folder's name
+    #[arg(long, value_name = "B")]
+    pub body: String,
+    /// Geometric altitudes above the datum, m
+    #[arg(long, value_name = "A", num_args = 1.., required = true, allow_hyphen_values = true, value_parser = finite)]
+    pub altitude_m: Vec<f64>,
+    #[command(flatten)]
+    /// What all probes share.
+    pub common: ProbeCommon,
+}
+
+/// Arguments of `probe height`.
+#[derive(Clone, Debug, Args)]
+pub struct ProbeHeightArgs {
+    /// The body, by its folder's name
+    #[arg(long, value_name = "B")]
+    pub body: String,
+    /// Points: CSV with the columns lat_deg and lon_deg
+    #[arg(long, value_name = "F.csv")]
+    pub points: PathBuf,
+    #[command(flatten)]
+    /// What all probes share.
+    pub common: ProbeCommon,
+}
+
+/// Arguments of `probe ephemeris`.
+#[derive(Clone, Debug, Args)]
+pub struct ProbeEphemerisArgs {
+    /// The body, by its folder's name
+    #[arg(long, value_name = "B")]
+    pub body: String,
+    /// The body to measure from (else the solar-system barycentre)
+    #[arg(long, value_name = "C")]
+    pub center: Option<String>,
+    /// Julian dates of TDB
+    #[arg(long, value_name = "JD", num_args = 1.., required = true, allow_hyphen_values = true, value_parser = julian_date)]
+    pub tdb: Vec<f64>,
+    #[command(flatten)]
+    /// What all probes share.
+    pub common: ProbeCommon,
+}
+
+/// Parses the command line. On `--help` and on wrong usage the text is printed and the exit code given back.
+///
+/// # Errors
+/// The exit code: 0 after help or version, 2 after wrong usage.
+pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Cli, ExitCode> {
+    Cli::try_parse_from(args).map_err(|e| {
+        // Nothing is left to tell where the terminal is gone.
+        let _ = e.print();
+        if e.use_stderr() { ExitCode::from(2) } else { ExitCode::SUCCESS }
+    })
+}
+
+/// `1280x720` → (1280, 720).
+fn size(text: &str) -> Result<(u32, u32), String> {
+    const LARGEST: u32 = 16_384;
+    let expected = || format!("expected WIDTHxHEIGHT in pixels, each 1 to {LARGEST}, for example 1280x720");
+    let (w, h) = text.split_once(['x', 'X', '×']).ok_or_else(expected)?;
+    let side = |s: &str| s.parse::<u32>().ok().filter(|v| (1..=LARGEST).contains(v)).ok_or_else(expected);
+    Ok((side(w)?, side(h)?))
+}
+
+/// A Julian date whose calendar year lies within ±100,000.
+fn julian_date(text: &str) -> Result<f64, String> {
+    const REACH_DAYS: f64 = 100_000.0 * 365.25;
+    let jd: f64 = text.parse().map_err(|_| "expected a Julian date of TDB, for example 2461265.241041667".to_owned())?;
+    if !jd.is_finite() || (jd - engine::time::J2000_JD).abs() > REACH_DAYS {
+        return Err("expected a Julian date of TDB within 100,000 years of J2000 (2451545.0)".to_owned());
+    }
+    Ok(jd)
+}
+
+/// A finite number.
+fn finite(text: &str) -> Result<f64, String> {
+    text.parse::<f64>().ok().filter(|x| x.is_finite()).ok_or_else(|| "expected a finite number".to_owned())
+}
+
+/// A path that ends in `.png` or `.exr`.
+fn picture(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    match path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase).as_deref() {
+        Some("png" | "exr") => Ok(path),
+        _ => Err("expected a file name that ends in .png or .exr".to_owned()),
+    }
+}
+
+impl ShotArgs {
+    /// The moment asked for.
+    pub fn time(&self) -> Option<SimTime> {
+        self.tdb.map(SimTime::from_jd_tdb)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    fn cli(words: &[&str]) -> Result<Cli, clap::Error> {
+        Cli::try_parse_from(std::iter::once("syzygy").chain(words.iter().copied()))
+    }
+
+    #[test]
+    fn the_words_hang_together() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn every_subcommand_shows_an_example() {
+        fn walk(command: &mut clap::Command, path: &str) {
+            let help = command.render_long_help().to_string();
+            assert!(path.ends_with("help") || help.contains("Example"), "{path}: {help}");
+            for sub in command.get_subcommands_mut() {
+                let path = format!("{path} {}", sub.get_name());
+                walk(sub, &path);
+            }
+        }
+        walk(&mut Cli::command(), "syzygy");
+    }
+
+    #[test]
+    fn play_is_what_happens_when_nothing_is_named() {
+        let bare = cli(&["--start", "eclipse", "--size", "800x600"]).unwrap();
+        assert!(bare.mode.is_none());
+        assert_eq!((bare.play.start.as_deref(), bare.play.size), (Some("eclipse"), Some((800, 600))));
+        assert!(matches!(cli(&["play", "--mods", "a", "--mods", "b"]).unwrap().mode, Some(Mode::Play(p)) if p.places.mods.len() == 2));
+    }
+
+    #[test]
+    fn heavy_takes_no_value_or_one_after_an_equals_sign() {
+        let heavy = |words: &[&str]| match cli(words).unwrap().mode {
+            Some(Mode::Replay(r)) => (r.heavy, r.files.len()),
+            other => panic!("{other:?}"),
+        };
+        assert_eq!(heavy(&["replay", "a"]), (None, 1));
+        assert_eq!(heavy(&["replay", "--heavy", "a", "b"]), (Some(97), 2));
+        assert_eq!(heavy(&["replay", "a", "--heavy=10"]), (Some(10), 1));
+    }
+
+    #[test]
+    fn numbers_that_are_none_are_refused() {
+        for (parser_says, ok) in [
+            (size("1280x720").is_ok(), true),
+            (size("0x720").is_ok(), false),
+            (size("1280").is_ok(), false),
+            (size("99999x2").is_ok(), false),
+            (julian_date("2461265.24").is_ok(), true),
+            (julian_date("NaN").is_ok(), false),
+            (julian_date("1e30").is_ok(), false),
+            (finite("inf").is_ok(), false),
+            (picture("a.PNG").is_ok(), true),
+            (picture("a.gif").is_ok(), false),
+        ] {
+            assert_eq!(parser_says, ok);
+        }
+    }
+}

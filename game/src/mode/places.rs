@@ -1,0 +1,100 @@
+//! Where things are: the assets folder, and the folder that the player may write in.
+//!
+//! Nothing is ever written beside the program unless it runs from a checkout, so that no rights are needed.
+
+use crate::cli::Places;
+use std::path::{Path, PathBuf};
+
+/// A folder that cannot be found.
+#[derive(Debug, thiserror::Error, miette::Diagnostic)]
+pub enum PlaceError {
+    /// No assets.
+    #[error("the assets folder was not found; looked for `systems` in:\n{}", looked.iter().map(|p| format!("  {}", p.display())).collect::<Vec<_>>().join("\n"))]
+    #[diagnostic(code(places::assets), help("name it with --assets DIR, or set SYZYGY_ASSETS"))]
+    Assets {
+        /// Where it was looked for.
+        looked: Vec<PathBuf>,
+    },
+    /// A folder that was named is none.
+    #[error("{}: expected a folder for {what}, found {}", path.display(), if path.exists() { "a file" } else { "nothing" })]
+    #[diagnostic(code(places::folder))]
+    NoFolder {
+        /// What was named.
+        path: PathBuf,
+        /// What for.
+        what: &'static str,
+    },
+}
+
+/// The assets folder: `--assets`, else `$SYZYGY_ASSETS`, else beside the program, else in the checkout it was built in.
+///
+/// # Errors
+/// [`PlaceError::Assets`], saying where it was looked for; one that was named is taken or refused, never passed over.
+pub fn assets(places: &Places) -> Result<PathBuf, PlaceError> {
+    let named = places.assets.clone().or_else(|| std::env::var_os("SYZYGY_ASSETS").filter(|v| !v.is_empty()).map(PathBuf::from));
+    let looked = named.map_or_else(usual_assets, |dir| vec![dir]);
+    looked.iter().find(|dir| dir.join("systems").is_dir()).cloned().ok_or(PlaceError::Assets { looked })
+}
+
+fn usual_assets() -> Vec<PathBuf> {
+    let mut looked = Vec::new();
+    if let Some(beside) = std::env::current_exe().ok().as_deref().and_then(Path::parent) {
+        looked.push(beside.join("assets"));
+        looked.push(beside.join("../share/syzygy/assets"));
+    }
+    looked.extend(checkout().map(|c| c.join("assets")));
+    looked.extend(std::env::current_dir().ok().map(|d| d.join("assets")));
+    looked
+}
+
+/// The mods to overlay, each checked to be a folder; none in safe mode.
+///
+/// # Errors
+/// [`PlaceError::NoFolder`].
+pub fn mods(places: &Places) -> Result<Vec<PathBuf>, PlaceError> {
+    if places.safe_mode {
+        return Ok(Vec::new());
+    }
+    match places.mods.iter().find(|m| !m.is_dir()) {
+        Some(path) => Err(PlaceError::NoFolder { path: path.clone(), what: "--mods" }),
+        None => Ok(places.mods.clone()),
+    }
+}
+
+/// The folder for saves and settings: `--data-dir`, else `$SYZYGY_DATA_DIR`, else `saves/` of the checkout the program was
+/// built in, else the user's data folder.
+pub fn data_dir(places: &Places) -> PathBuf {
+    let named = places.data_dir.clone().or_else(|| std::env::var_os("SYZYGY_DATA_DIR").filter(|v| !v.is_empty()).map(PathBuf::from));
+    named
+        .or_else(|| checkout().map(|c| c.join("saves")).filter(|d| d.is_dir()))
+        .or_else(|| directories::ProjectDirs::from("", "", "syzygy").map(|d| d.data_dir().to_owned()))
+        .unwrap_or_else(|| PathBuf::from("saves"))
+}
+
+/// The checkout that this program was built in, where it still stands.
+fn checkout() -> Option<PathBuf> {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().filter(|root| root.join("game/Cargo.toml").is_file()).map(Path::to_owned)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_named_assets_folder_is_not_passed_over() {
+        let dir = tempfile::tempdir().unwrap();
+        let places = Places { assets: Some(dir.path().to_owned()), ..Places::default() };
+        let e = assets(&places).unwrap_err().to_string();
+        assert!(e.contains(&dir.path().display().to_string()) && e.contains("systems"), "{e}");
+        std::fs::create_dir(dir.path().join("systems")).unwrap();
+        assert_eq!(assets(&places).unwrap(), dir.path());
+    }
+
+    #[test]
+    fn safe_mode_leaves_mods_out_and_a_missing_mod_is_named() {
+        let mut places = Places { mods: vec!["no/such/mod".into()], ..Places::default() };
+        assert!(mods(&places).unwrap_err().to_string().contains("no/such/mod"));
+        places.safe_mode = true;
+        assert!(mods(&places).unwrap().is_empty());
+    }
+}
