@@ -1,1 +1,83 @@
-//! THE FRAME.
+//! THE FRAME: the passes in their order. Each is preceded by the reason for which it may be skipped; textures are values.
+//!
+//! Exposure: HDR is stored pre-exposed with the exposure of the frame before. A still (`adapt_s: None`), or a first frame, has
+//! none: its light is drawn twice, first with a middling exposure ([`STARTING_PRE`]) to take the histogram, then for good.
+
+use super::pass::Passes;
+use super::report::FrameReport;
+use super::shared::FrameContext;
+use super::targets::Targets;
+use super::{Overlay, RenderError, Renderer, Target};
+use crate::gpu::Gpu;
+use crate::scene::gpu_data::ExposureUniform;
+use crate::scene::{AutoOr, Snapshot};
+
+/// Pre-exposure before anything is known: half floats then hold luminances from 1e-5 to 6e6 cd/m².
+pub const STARTING_PRE: f32 = 0.01;
+
+/// Draws one frame and submits it.
+pub fn draw(
+    renderer: &mut Renderer,
+    gpu: &Gpu,
+    scene: &Snapshot,
+    target: Target<'_>,
+    overlay: Option<&mut dyn Overlay>,
+) -> Result<FrameReport, RenderError> {
+    let (view, format, size) = target.parts();
+    if size.contains(&0) {
+        return Ok(FrameReport::default());
+    }
+    if renderer.targets.as_ref().is_none_or(|t| t.size != size) {
+        renderer.targets = Some(Targets::new(gpu, size));
+    }
+    let still = scene.adapt_s.is_none();
+    let unexposed = still || !renderer.exposed;
+    match scene.exposure {
+        AutoOr::Ev100(ev) => renderer.shared.write_exposure(gpu, &ExposureUniform::fixed(ev)),
+        AutoOr::Auto { .. } if unexposed => {
+            renderer.shared.write_exposure(gpu, &ExposureUniform::starting(STARTING_PRE));
+            let (mut f, passes) = renderer.begin(gpu, scene, false)?;
+            let lit = light(&mut f, passes)?;
+            passes.exposure.record(&mut f, &lit);
+            f.keep_exposure();
+            f.submit();
+        }
+        AutoOr::Auto { .. } => {}
+    }
+
+    let (mut f, passes) = renderer.begin(gpu, scene, true)?;
+    let lit = light(&mut f, passes)?;
+
+    let skip = passes.exposure.skip(scene, unexposed);
+    if f.runs("exposure", skip) && !unexposed {
+        passes.exposure.record(&mut f, &lit);
+    }
+
+    f.runs("tonemap", None);
+    passes.tonemap.record(&mut f, &lit, view, format);
+
+    let skip = overlay.is_none().then(|| "nothing is painted over the picture".to_owned());
+    if let (true, Some(overlay)) = (f.runs("overlay", skip), overlay) {
+        overlay.record(gpu, &mut f.encoder, view, format, size);
+    }
+
+    f.keep_exposure();
+    let report = f.submit();
+    renderer.end(gpu, report, still)
+}
+
+/// Everything that shines, in this order: air tables, tile heights, shadow, smooth bodies, terrain, ships, stars and the sun's
+/// disc, sky (which lays the air over `opaque` and its depth, into `aerial`). From the tables of the air to the finished light: the HDR texture that the picture is made of.
+fn light(f: &mut FrameContext<'_>, passes: &mut Passes) -> Result<wgpu::TextureView, RenderError> {
+    f.clear_opaque();
+    let air = passes.vacuum.clone();
+    let shadow = passes.no_shadow.clone();
+    let light = f.shared.light_group(f.gpu, &air, &shadow);
+
+    let skip = passes.smooth_body.skip(f.scene);
+    if f.runs("smooth_body", skip) {
+        passes.smooth_body.record(f, &light);
+    }
+
+    Ok(f.targets.opaque.view.clone())
+}

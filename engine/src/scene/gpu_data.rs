@@ -1,4 +1,170 @@
 //! `#[repr(C)]` mirrors of the structs in `shaders/`, and the second of the two places that may narrow f64 to f32.
 //!
 //! glam's `scalar-math` (asked for by rapier's determinism) makes `align_of::<Vec4>()` 4, so GPU structs use plain arrays
-//! and explicit padding; `tests/` compares every one of them, field by field, with naga's reflection of the WGSL.
+//! and explicit padding; `tests/tests/shaders.rs` compares every one, field by field, with naga's reflection of the WGSL.
+//! A struct here has the name and the field names of its WGSL twin plus `Uniform`. Fields are explained there.
+
+use super::{Body, Camera, Snapshot, Surface};
+use bytemuck::{Pod, Zeroable};
+use glam::Vec3;
+
+/// Bodies that a frame may hold (nearest first; further ones are left out).
+pub const MAX_BODIES: usize = 32;
+/// Occluders of one body.
+pub const MAX_OCCLUDERS: usize = 8;
+
+/// `Frame` of `shaders/lib/frame.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[allow(missing_docs)]
+pub struct FrameUniform {
+    pub clip_from_icrf: [[f32; 4]; 4],
+    pub right: [f32; 4],
+    pub up: [f32; 4],
+    pub forward: [f32; 4],
+    pub size: [f32; 4],
+    pub star: [f32; 4],
+    pub intensity: [f32; 4],
+    pub counts: [u32; 4],
+}
+
+/// `Body` of `shaders/lib/frame.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[allow(missing_docs)]
+pub struct BodyUniform {
+    pub centre: [f32; 4],
+    pub fixed_x: [f32; 4],
+    pub fixed_y: [f32; 4],
+    pub fixed_z: [f32; 4],
+    pub up: [f32; 4],
+    pub sun: [f32; 4],
+    pub illuminance: [f32; 4],
+    pub albedo: [f32; 4],
+    pub ids: [i32; 4],
+    pub occluders: [[f32; 4]; MAX_OCCLUDERS],
+}
+
+/// `Bodies` of `shaders/lib/frame.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[allow(missing_docs)]
+pub struct BodiesUniform {
+    pub list: [BodyUniform; MAX_BODIES],
+}
+
+/// `Exposure` of `shaders/lib/frame.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[allow(missing_docs)]
+pub struct ExposureUniform {
+    pub pre: f32,
+    pub final_: f32,
+    pub average: f32,
+    pub settled: f32,
+}
+
+/// A vector and a scalar in one `vec4`.
+pub const fn vec4(v: Vec3, w: f32) -> [f32; 4] {
+    [v.x, v.y, v.z, w]
+}
+
+impl FrameUniform {
+    /// From the snapshot; `number` seeds what noise there is (0 for stills).
+    #[allow(clippy::cast_possible_truncation)]
+    pub fn new(scene: &Snapshot, number: u32) -> Self {
+        let camera: &Camera = &scene.camera;
+        let icrf_from_view = camera.view_from_icrf.conjugate();
+        let tan_y = (0.5 * camera.fov_y_rad).tan();
+        let [w, h] = camera.size_px.map(|n| n.max(1) as f32);
+        Self {
+            clip_from_icrf: camera.clip_from_icrf().to_cols_array_2d(),
+            right: vec4(icrf_from_view * Vec3::X * (tan_y * camera.aspect()), camera.near_m),
+            up: vec4(icrf_from_view * Vec3::Y * tan_y, camera.pixel_rad()),
+            forward: vec4(icrf_from_view * Vec3::NEG_Z, scene.adapt_s.unwrap_or(-1.0)),
+            size: [w, h, 1.0 / w, 1.0 / h],
+            star: vec4(scene.star.centre_m, scene.star.radius_m),
+            intensity: vec4(scene.star.intensity_cd, 0.0),
+            counts: [scene.bodies.len().min(MAX_BODIES) as u32, number, 0, 0],
+        }
+    }
+}
+
+impl BodyUniform {
+    /// From the snapshot; `air_slot` is the layer of its tables, if it has air.
+    #[allow(clippy::cast_possible_truncation)]
+    pub fn new(body: &Body, air_slot: Option<u32>) -> Self {
+        let axis = |v: Vec3| vec4(body.icrf_from_fixed * v, 0.0);
+        let mut occluders = [[0.0; 4]; MAX_OCCLUDERS];
+        for (slot, o) in occluders.iter_mut().zip(&body.occluders) {
+            *slot = vec4(o.centre_m, o.radius_m);
+        }
+        Self {
+            centre: vec4(body.centre_m, body.radius_m),
+            fixed_x: axis(Vec3::X),
+            fixed_y: axis(Vec3::Y),
+            fixed_z: axis(Vec3::Z),
+            up: vec4(body.camera_up, body.camera_altitude_m),
+            sun: vec4(body.sun_direction, body.sun_angular_radius_rad),
+            illuminance: vec4(body.sun_illuminance_lx, 0.0),
+            albedo: vec4(body.albedo, 0.0),
+            ids: [
+                i32::from(body.id),
+                body.occluders.len().min(MAX_OCCLUDERS) as i32,
+                air_slot.map_or(-1, |s| s as i32),
+                i32::from(matches!(body.surface, Surface::Tiles(_))),
+            ],
+            occluders,
+        }
+    }
+}
+
+impl ExposureUniform {
+    /// Fixed exposure value at ISO 100: luminance `1.2 · 2^EV` becomes 1 [Lagarde & de Rousiers 2014, "Moving Frostbite to PBR", §5.1].
+    pub fn fixed(ev100: f32) -> Self {
+        let e = 1.0 / (1.2 * ev100.clamp(-20.0, 40.0).exp2());
+        Self { pre: e, final_: e, average: 0.0, settled: 1.0 }
+    }
+    /// Before a histogram was taken.
+    pub const fn starting(pre: f32) -> Self {
+        Self { pre, final_: pre, average: 0.0, settled: 0.0 }
+    }
+}
+
+impl BodiesUniform {
+    /// From the snapshot; `air_slot(i)` is the slot of body `i`'s air tables.
+    pub fn new(scene: &Snapshot, air_slot: impl Fn(usize) -> Option<u32>) -> Self {
+        let mut all = Self::zeroed();
+        for (i, (slot, body)) in all.list.iter_mut().zip(&scene.bodies).enumerate() {
+            *slot = BodyUniform::new(body, air_slot(i));
+        }
+        all
+    }
+}
+
+/// `Shadow` of `shaders/lib/shadow.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[allow(missing_docs)]
+pub struct ShadowUniform {
+    pub map_from_icrf: [[f32; 4]; 4],
+    pub shape: [f32; 4],
+}
+
+/// `Meter` of `shaders/pass/exposure.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[allow(missing_docs)]
+pub struct MeterUniform {
+    pub range: [f32; 4],
+    pub trim: [f32; 4],
+    pub limit: [f32; 4],
+}
+
+impl MeterUniform {
+    /// The light meter: 2^-10 … 2^22 cd/m² in eighths of a stop, counted between the 50th and 98th percentile, adapting to
+    /// light in about 0.4 s and to dark in about 1.2 s, exposing for 0.02 … 60,000 cd/m².
+    pub const fn new(compensation_ev: f32) -> Self {
+        Self { range: [-10.0, 8.0, compensation_ev, 0.0], trim: [0.5, 0.98, 2.5, 0.8], limit: [0.02, 6.0e4, 0.0, 0.0] }
+    }
+}

@@ -1,0 +1,45 @@
+//! The passes: one file each, with a shader of the same name in `shaders/pass/`. Their order is in [`super::frame`].
+//!
+//! A pass has `new` (compiles), `skip` (why the scene does not need it, in words) and `record`.
+
+pub mod exposure;
+pub mod smooth_body;
+pub mod tonemap;
+
+use super::RenderError;
+use super::maps::MapStore;
+use super::shared::{AirTables, ShadowMap, Shared};
+use crate::gpu::{Gpu, ShaderLibrary};
+use crate::scene::Snapshot;
+
+/// All passes, compiled.
+pub struct Passes {
+    /// What the air tables are while no body in the scene has air.
+    pub vacuum: AirTables,
+    /// What the shadow map is while no ship throws a shadow.
+    pub no_shadow: ShadowMap,
+    /// Spheres without terrain.
+    pub smooth_body: smooth_body::SmoothBody,
+    /// Histogram and adaptation.
+    pub exposure: exposure::Exposure,
+    /// HDR to the screen.
+    pub tonemap: tonemap::Tonemap,
+}
+
+impl Passes {
+    /// Compiles all.
+    pub fn new(gpu: &Gpu, shaders: &ShaderLibrary, shared: &Shared, maps: &MapStore) -> Result<Self, RenderError> {
+        Ok(Self {
+            vacuum: AirTables::vacuum(gpu),
+            no_shadow: ShadowMap::none(gpu),
+            smooth_body: smooth_body::SmoothBody::new(gpu, shaders, shared, maps)?,
+            exposure: exposure::Exposure::new(gpu, shaders, shared)?,
+            tonemap: tonemap::Tonemap::new(gpu, shaders, shared)?,
+        })
+    }
+
+    /// The slot of the air tables of each body of the scene: none has any yet.
+    pub fn air_slots(&mut self, scene: &Snapshot) -> Vec<Option<u32>> {
+        vec![None; scene.bodies.len()]
+    }
+}

@@ -1,0 +1,148 @@
+//! Pipelines and bind group layouts in the frame's conventions: shorthand, no policy.
+
+use super::targets::{DEPTH, HDR};
+use crate::gpu::Gpu;
+use wgpu::ShaderStages;
+
+/// A uniform buffer entry, visible to all stages.
+pub const fn uniform_entry(binding: u32) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: ShaderStages::all(),
+        ty: wgpu::BindingType::Buffer { ty: wgpu::BufferBindingType::Uniform, has_dynamic_offset: false, min_binding_size: None },
+        count: None,
+    }
+}
+
+/// A filterable float texture entry.
+pub const fn texture_entry(binding: u32, dimension: wgpu::TextureViewDimension) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: ShaderStages::all(),
+        ty: wgpu::BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Float { filterable: true },
+            view_dimension: dimension,
+            multisampled: false,
+        },
+        count: None,
+    }
+}
+
+/// A depth texture entry.
+pub const fn depth_entry(binding: u32) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: ShaderStages::all(),
+        ty: wgpu::BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Depth,
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: false,
+        },
+        count: None,
+    }
+}
+
+/// A sampler entry.
+pub const fn sampler_entry(binding: u32, kind: wgpu::SamplerBindingType) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry { binding, visibility: ShaderStages::all(), ty: wgpu::BindingType::Sampler(kind), count: None }
+}
+
+/// A render pipeline in the frame's conventions.
+pub struct PipelineKind<'a> {
+    /// Name, of shader file and pass.
+    pub label: &'a str,
+    /// The module; entry points `vertex` and `fragment`.
+    pub module: &'a wgpu::ShaderModule,
+    /// Bind group layouts from group 0 on.
+    pub groups: &'a [&'a wgpu::BindGroupLayout],
+    /// Vertex buffers.
+    pub buffers: &'a [Option<wgpu::VertexBufferLayout<'a>>],
+    /// Format of the one colour target; `None` for depth only.
+    pub colour: Option<wgpu::TextureFormat>,
+    /// How it is blended; `None` replaces.
+    pub blend: Option<wgpu::BlendState>,
+    /// `None`: no depth; `Some(write)`: tested with Greater against the frame's depth and written or not.
+    pub depth: Option<bool>,
+    /// Faces left out.
+    pub cull: Option<wgpu::Face>,
+    /// Values of `override` constants.
+    pub constants: &'a [(&'a str, f64)],
+}
+
+impl<'a> PipelineKind<'a> {
+    /// Draws opaque geometry into HDR and depth.
+    pub const fn opaque(label: &'a str, module: &'a wgpu::ShaderModule, groups: &'a [&'a wgpu::BindGroupLayout]) -> Self {
+        Self { label, module, groups, buffers: &[], colour: Some(HDR), blend: None, depth: Some(true), cull: None, constants: &[] }
+    }
+    /// Draws one full-screen triangle into a colour target.
+    pub const fn full_screen(
+        label: &'a str,
+        module: &'a wgpu::ShaderModule,
+        groups: &'a [&'a wgpu::BindGroupLayout],
+        colour: wgpu::TextureFormat,
+    ) -> Self {
+        Self { label, module, groups, buffers: &[], colour: Some(colour), blend: None, depth: None, cull: None, constants: &[] }
+    }
+    /// Makes it.
+    pub fn make(&self, gpu: &Gpu) -> wgpu::RenderPipeline {
+        let groups: Vec<_> = self.groups.iter().map(|g| Some(*g)).collect();
+        let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some(self.label),
+            bind_group_layouts: &groups,
+            immediate_size: 0,
+        });
+        let compilation_options = wgpu::PipelineCompilationOptions { constants: self.constants, ..Default::default() };
+        let targets = [self.colour.map(|format| wgpu::ColorTargetState { format, blend: self.blend, write_mask: wgpu::ColorWrites::ALL })];
+        gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some(self.label),
+            layout: Some(&layout),
+            vertex: wgpu::VertexState {
+                module: self.module,
+                entry_point: Some("vertex"),
+                compilation_options: compilation_options.clone(),
+                buffers: self.buffers,
+            },
+            primitive: wgpu::PrimitiveState { cull_mode: self.cull, ..Default::default() },
+            depth_stencil: self.depth.map(|write| wgpu::DepthStencilState {
+                format: DEPTH,
+                depth_write_enabled: Some(write),
+                depth_compare: Some(wgpu::CompareFunction::Greater),
+                stencil: wgpu::StencilState::default(),
+                bias: wgpu::DepthBiasState::default(),
+            }),
+            multisample: wgpu::MultisampleState::default(),
+            fragment: self.colour.is_some().then(|| wgpu::FragmentState {
+                module: self.module,
+                entry_point: Some("fragment"),
+                compilation_options,
+                targets: &targets,
+            }),
+            multiview_mask: None,
+            cache: None,
+        })
+    }
+}
+
+/// A compute pipeline with entry point `entry`.
+pub fn compute_pipeline(
+    gpu: &Gpu,
+    label: &str,
+    module: &wgpu::ShaderModule,
+    groups: &[&wgpu::BindGroupLayout],
+    entry: &str,
+) -> wgpu::ComputePipeline {
+    let groups: Vec<_> = groups.iter().map(|g| Some(*g)).collect();
+    let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some(label),
+        bind_group_layouts: &groups,
+        immediate_size: 0,
+    });
+    gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        label: Some(label),
+        layout: Some(&layout),
+        module,
+        entry_point: Some(entry),
+        compilation_options: wgpu::PipelineCompilationOptions::default(),
+        cache: None,
+    })
+}

@@ -1,0 +1,30 @@
+//! The report: which passes ran, which were skipped, and why. Written by [`super::frame`], printed by `syzygy shot --passes`.
+
+use serde::{Deserialize, Serialize};
+
+/// What became of one pass.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PassReport {
+    /// Its name: that of its file in `render/pass/`.
+    pub name: String,
+    /// Whether it ran.
+    pub ran: bool,
+    /// Why it ran or was skipped, in words.
+    pub reason: String,
+    /// Time on the GPU, ms, where it was measured.
+    pub gpu_ms: Option<f64>,
+}
+
+/// What became of a frame.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct FrameReport {
+    /// The passes in the order of the frame.
+    pub passes: Vec<PassReport>,
+}
+
+impl FrameReport {
+    /// The entry of a pass.
+    pub fn pass(&self, name: &str) -> Option<&PassReport> {
+        self.passes.iter().find(|p| p.name == name)
+    }
+}

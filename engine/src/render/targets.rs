@@ -1,0 +1,48 @@
+//! Targets: every texture sized by the picture, in one table.
+
+use crate::gpu::Gpu;
+use crate::gpu::texture::Texture;
+use wgpu::TextureUsages as Use;
+
+/// Format of the HDR targets.
+pub const HDR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+/// Format of the depth target: infinite reversed-Z, cleared to 0, compared with Greater.
+pub const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+/// Levels of the bloom chain at most.
+pub const BLOOM_LEVELS: u32 = 7;
+
+/// The table.
+#[derive(Debug)]
+pub struct Targets {
+    /// Width and height, pixels.
+    pub size: [u32; 2],
+    /// Opaque things, stars and the sun's disc; pre-exposed.
+    pub opaque: Texture,
+    /// The same behind air; written by the sky pass.
+    pub aerial: Texture,
+    /// Depth of opaque things.
+    pub depth: Texture,
+    /// Bloom chain: level 0 is half the picture.
+    pub bloom: Texture,
+    /// Views of each bloom level.
+    pub bloom_levels: Vec<wgpu::TextureView>,
+}
+
+impl Targets {
+    /// All textures for a picture of this size.
+    pub fn new(gpu: &Gpu, size: [u32; 2]) -> Self {
+        let d = &gpu.device;
+        let hdr = Use::RENDER_ATTACHMENT | Use::TEXTURE_BINDING | Use::COPY_SRC;
+        let half = size.map(|n| n.div_ceil(2).max(1));
+        let levels = (half[0].min(half[1]).ilog2() + 1).min(BLOOM_LEVELS);
+        let bloom = Texture::with(d, "bloom", [half[0], half[1], 1], levels, HDR, hdr);
+        Self {
+            size,
+            opaque: Texture::new(d, "hdr opaque", size, HDR, hdr),
+            aerial: Texture::new(d, "hdr aerial", size, HDR, hdr),
+            depth: Texture::new(d, "depth", size, DEPTH, hdr),
+            bloom_levels: (0..levels).map(|i| bloom.level_view(i)).collect(),
+            bloom,
+        }
+    }
+}

@@ -1,0 +1,66 @@
+// Tone mapping: exposure, a filmic curve, sRGB, dithering. Rust side: engine/src/render/pass/tonemap.rs.
+
+#include "lib/frame.wgsl"
+#include "lib/color.wgsl"
+
+@group(0) @binding(0) var<uniform> frame: Frame;
+@group(0) @binding(2) var<uniform> exposure: Exposure;
+@group(1) @binding(0) var lit: texture_2d<f32>;
+@group(1) @binding(1) var<uniform> wanted: Exposure;
+
+// 1 where the target keeps what it is given (we encode), 0 where it encodes itself.
+override encode: f32 = 1.0;
+
+struct Varying {
+    @builtin(position) position: vec4<f32>,
+    @location(0) uv: vec2<f32>,
+}
+
+@vertex
+fn vertex(@builtin(vertex_index) index: u32) -> Varying {
+    var out: Varying;
+    out.uv = full_screen_uv(index);
+    out.position = full_screen_position(out.uv);
+    return out;
+}
+
+// AgX in its minimal form [Troy Sobotka; fit by Benjamin Wrensch 2023]: inset to a wider gamut, log2 over 16.5 stops, a sigmoid, outset.
+fn agx(linear: vec3<f32>) -> vec3<f32> {
+    let inset = mat3x3<f32>(
+        vec3<f32>(0.842479062253094, 0.0423282422610123, 0.0423756549057051),
+        vec3<f32>(0.0784335999999992, 0.878468636469772, 0.0784336),
+        vec3<f32>(0.0792237451477643, 0.0791661274605434, 0.879142973793104));
+    let outset = mat3x3<f32>(
+        vec3<f32>(1.19687900512017, -0.0528968517574562, -0.0529716355144438),
+        vec3<f32>(-0.0980208811401368, 1.15190312990417, -0.0980434501171241),
+        vec3<f32>(-0.0990297440797205, -0.0989611768448433, 1.15107367264116));
+    let lowest = -12.47393;
+    let highest = 4.026069;
+    let v = inset * linear;
+    let x = (clamp(log2(max(v, vec3<f32>(1e-10))), vec3<f32>(lowest), vec3<f32>(highest)) - lowest) / (highest - lowest);
+    let x2 = x * x;
+    let x4 = x2 * x2;
+    let curve = 15.5 * x4 * x2 - 40.14 * x4 * x + 31.96 * x4 - 6.868 * x2 * x + 0.4298 * x2 + 0.1191 * x - 0.00232;
+    // A little more contrast and colour than the neutral look (its "punchy" half way).
+    let y = luminance_of(curve);
+    let graded = pow(max(vec3<f32>(y) + 1.2 * (curve - vec3<f32>(y)), vec3<f32>(0.0)), vec3<f32>(1.15));
+    // The curve's output is display-encoded (power 2.2).
+    return pow(max(outset * graded, vec3<f32>(0.0)), vec3<f32>(2.2));
+}
+
+// Interleaved gradient noise [Jimenez 2014], 0…1.
+fn noise(pixel: vec2<f32>) -> f32 {
+    return fract(52.9829189 * fract(dot(pixel, vec2<f32>(0.06711056, 0.00583715))));
+}
+
+@fragment
+fn fragment(in: Varying) -> @location(0) vec4<f32> {
+    let hdr = textureLoad(lit, vec2<u32>(in.position.xy), 0).rgb * (wanted.final_ / exposure.pre);
+    let shift = f32(frame.counts.y % 64u) * 5.588238;
+    let dither = noise(in.position.xy + shift) - 0.5;
+    let encoded = srgb_encode(agx(hdr)) + dither / 255.0;
+    if encode > 0.5 {
+        return vec4<f32>(encoded, 1.0);
+    }
+    return vec4<f32>(srgb_decode(max(encoded, vec3<f32>(0.0))), 1.0);
+}
