@@ -37,6 +37,8 @@ pub struct Contact {
     pub legs: Vec<LegState>,
     /// Ticks for which the ship has been quiet on the ground.
     pub quiet_ticks: u16,
+    /// Did something touch at the end of the last tick?
+    pub touching: bool,
 }
 
 /// What a tick in the bubble did.
@@ -60,6 +62,17 @@ pub struct Bubble {
     patch: Option<Arc<Patch>>,
 }
 
+/// What a tick needs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Nearness {
+    /// Nothing can touch: free motion, no mesh needed.
+    Clear,
+    /// Near the ground at a speed at which any touch is an impact: free motion, then [`swept`].
+    Fast,
+    /// Near and gentle: [`Bubble::tick`].
+    Touchable,
+}
+
 /// What the ship is, for one tick.
 #[derive(Clone, Copy)]
 pub struct Ship<'a> {
@@ -71,6 +84,8 @@ pub struct Ship<'a> {
     pub loads: Loads,
     /// Legs out?
     pub gear_down: bool,
+    /// Is anybody at the controls? A ship that is flown never comes to rest.
+    pub flown: bool,
 }
 
 /// Where the ship is, for one tick.
@@ -90,7 +105,48 @@ impl Bubble {
         self.patch.is_some()
     }
 
-    /// Advances `state` by `dt_s` (a tick). An error leaves `state` as it was.
+    /// Says what a tick of `dt_s` needs, and holds the mesh while something can touch. What `contact` remembers is dropped
+    /// where nothing can.
+    pub fn prepare(
+        &mut self,
+        contact: &mut Contact,
+        state: &BodyState,
+        chassis: &Chassis,
+        surface: &dyn Surface,
+        dt_s: f64,
+    ) -> Result<Nearness, RigidError> {
+        let reach = chassis.reach_m();
+        let speed = state.velocity.length();
+        // 20 m/s² more than gravity would be needed to gain on this in one tick.
+        let span = reach + (speed + 20.0 * dt_s) * dt_s;
+        let radius = state.position.length();
+        if surface.clearance_m(state.position.0) > span * (1.0 + sweep::SLOPE_MAX) {
+            *contact = Contact::default();
+            self.patch = None;
+            return Ok(Nearness::Clear);
+        }
+        if speed > FAST_M_S {
+            *contact = Contact::default();
+            self.patch = None;
+            return Ok(Nearness::Fast);
+        }
+        let direction = state.position.0.normalize_or(DVec3::Z);
+        let key = PatchKey::for_ship(contact.key, surface.radius_m(), direction);
+        let patch = match self.patch.take() {
+            Some(p) if p.key == key => p,
+            _ => Arc::new(Patch::build(surface, key, reach)?),
+        };
+        let above = radius - span > patch.top_radius_m;
+        self.patch = Some(patch);
+        if above {
+            *contact = Contact::default();
+        }
+        contact.key = Some(key);
+        contact.legs.resize(chassis.legs.len(), LegState::default());
+        Ok(if above { Nearness::Clear } else { Nearness::Touchable })
+    }
+
+    /// Advances `state` by `dt_s` (a tick), whatever is near. An error leaves `state` as it was.
     pub fn tick(
         &mut self,
         contact: &mut Contact,
@@ -99,59 +155,57 @@ impl Bubble {
         place: &Place,
         dt_s: f64,
     ) -> Result<Report, RigidError> {
-        let reach = ship.chassis.reach_m();
-        let clearance = place.surface.clearance_m(state.position.0);
-        let speed = state.velocity.length();
-        // What cannot touch within this tick is free: one f64 midpoint step, no mesh, no rapier.
-        let span = reach + (speed + 20.0 * dt_s) * dt_s;
-        if speed > FAST_M_S || clearance > span * (1.0 + sweep::SLOPE_MAX) {
-            *contact = Contact::default();
-            self.patch = None;
-            return Ok(free(state, ship, place, dt_s));
-        }
-        let direction = state.position.0.normalize_or(DVec3::Z);
-        let key = PatchKey::for_ship(contact.key, place.surface.radius_m(), direction);
-        let patch = match self.patch.take() {
-            Some(p) if p.key == key => p,
-            _ => Arc::new(Patch::build(place.surface, key, reach)?),
-        };
-        self.patch = Some(patch.clone());
-        contact.key = Some(key);
-        contact.legs.resize(ship.chassis.legs.len(), LegState::default());
-        Ok(touchable(contact, state, ship, place, &patch, dt_s))
-    }
-}
-
-/// A tick in which nothing gentle can happen: free motion, swept.
-fn free(state: &mut BodyState, ship: &Ship, place: &Place, dt_s: f64) -> Report {
-    let before = *state;
-    drift(state, ship, place, DVec3::ZERO, DVec3::ZERO, false, dt_s);
-    let mut first: Option<(f64, DVec3)> = None;
-    let reach = ship.chassis.reach_m();
-    let span = reach + (state.position - before.position).length();
-    if place.surface.clearance_m(before.position.0) <= span * (1.0 + sweep::SLOPE_MAX) {
-        for m in ship.chassis.extremes(ship.gear_down) {
-            let a = before.position.0 + before.fixed_from_hull.raw(m);
-            let b = state.position.0 + state.fixed_from_hull.raw(m);
-            if let Some(f) = sweep::first_hit(place.surface, a, b)
-                && first.is_none_or(|(best, _)| f < best)
-            {
-                first = Some((f, a + (b - a) * f));
+        let before = *state;
+        match (self.prepare(contact, state, ship.chassis, place.surface, dt_s)?, self.patch.clone()) {
+            (Nearness::Touchable, Some(patch)) => Ok(touchable(contact, state, ship, place, &patch, dt_s)),
+            (Nearness::Fast, _) => {
+                drift(state, ship, place, DVec3::ZERO, DVec3::ZERO, false, dt_s);
+                let Some((at, report)) = swept(&before, state, ship.chassis, ship.gear_down, place.surface) else {
+                    return Ok(Report::default());
+                };
+                *state = at;
+                Ok(report)
+            }
+            _ => {
+                drift(state, ship, place, DVec3::ZERO, DVec3::ZERO, false, dt_s);
+                Ok(Report::default())
             }
         }
     }
-    let Some((fraction, at)) = first else { return Report::default() };
-    // The pose at the impact: along the chord, which over a tick differs from the path by under ½ g dt² ≈ 1 mm.
-    let velocity = before.velocity;
-    state.position = before.position + (state.position - before.position) * fraction;
-    state.fixed_from_hull = before.fixed_from_hull;
-    let normal_speed = -velocity.0.dot(normal(place.surface, at));
-    Report {
-        touching: true,
-        touchdown_m_s: Some(normal_speed.max(0.0)),
-        crash_m_s: Some(normal_speed.max(velocity.length() * 0.1)),
-        ..Report::default()
+}
+
+/// The first touch of hull or feet on the way from `before` to `after`, too fast to be gentle: the state at the impact, and how hard.
+pub fn swept(
+    before: &BodyState,
+    after: &BodyState,
+    chassis: &Chassis,
+    gear_down: bool,
+    surface: &dyn Surface,
+) -> Option<(BodyState, Report)> {
+    let mut first: Option<(f64, DVec3)> = None;
+    for m in chassis.extremes(gear_down) {
+        let a = before.position.0 + before.fixed_from_hull.raw(m);
+        let b = after.position.0 + after.fixed_from_hull.raw(m);
+        if let Some(f) = sweep::first_hit(surface, a, b)
+            && first.is_none_or(|(best, _)| f < best)
+        {
+            first = Some((f, a + (b - a) * f));
+        }
     }
+    let (fraction, at) = first?;
+    // Along the chord, which over a tick differs from the path by under ½ g dt² ≈ 1 mm.
+    let position = before.position + (after.position - before.position) * fraction;
+    let q = before.fixed_from_hull.0.lerp(after.fixed_from_hull.0, fraction).normalize();
+    let speed = after.velocity.length();
+    let closing = -after.velocity.0.dot(normal(surface, at));
+    let report = Report {
+        touching: true,
+        touchdown_m_s: Some(closing.max(0.0)),
+        // A graze at this speed tears as much as it presses.
+        crash_m_s: Some(closing.max(0.1 * speed)),
+        ..Report::default()
+    };
+    Some((BodyState { position, fixed_from_hull: Rotation::new(q), ..*after }, report))
 }
 
 /// The surface's upward normal at a point, by central differences over a metre.
@@ -190,9 +244,10 @@ fn touchable(contact: &mut Contact, state: &mut BodyState, ship: &Ship, place: &
         }
     }
     report.ground_accel_m_s2 = impulse / dt_s;
+    contact.touching = report.touching;
     let quiet = report.touching
         && (feet >= 3 || feet == 0)
-        && ship.loads == Loads::default()
+        && !ship.flown
         && state.velocity.length() < QUIET_M_S
         && state.angular.length() < QUIET_RAD_S;
     contact.quiet_ticks = if quiet { contact.quiet_ticks.saturating_add(1) } else { 0 };

@@ -16,7 +16,7 @@ pub mod hull;
 pub mod sweep;
 
 pub use body::{BodyState, Loads, MassProps, RotatingFrame};
-pub use bubble::{Bubble, Contact, Report};
+pub use bubble::{Bubble, Contact, Nearness, Report};
 pub use gear::{Chassis, Leg, LegState};
 pub use ground::{Patch, PatchKey, Surface};
 
