@@ -1,1 +1,67 @@
-//! The session: the loop body that every mode calls.
+//! The session: the loop body that every mode calls. Live play, a headless run, a replay and a picture differ only in who
+//! makes the commands and where the picture goes.
+//!
+//! It holds what outlives a World: the quick slots, and the count of ticks. Not here: the clock on the wall (the window
+//! counts ticks owed), files ([`crate::save`]), drawing ([`crate::view`]).
+
+use crate::command::{Action, Commands};
+use crate::world::World;
+use std::collections::VecDeque;
+
+/// Quick slots that a session keeps.
+pub const QUICK_SLOTS: usize = 3;
+
+/// A flight in progress.
+#[derive(Clone)]
+pub struct Session {
+    /// The simulated truth.
+    pub world: World,
+    /// Ticks of the session so far.
+    pub ticks: u64,
+    quick: VecDeque<World>,
+}
+
+/// What a tick did beyond advancing the World, for those who write files or show messages.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Event {
+    /// The state was put into a quick slot.
+    QuickSaved,
+    /// The newest quick slot was taken back.
+    QuickLoaded,
+    /// There was no quick slot to go back to.
+    NothingToLoad,
+}
+
+impl Session {
+    /// A session that begins with this World.
+    pub fn new(world: World) -> Self {
+        Self { world, ticks: 0, quick: VecDeque::new() }
+    }
+
+    /// One tick: quick slots first, then the World.
+    pub fn tick(&mut self, commands: &Commands) -> Vec<Event> {
+        let mut events = Vec::new();
+        for action in &commands.actions {
+            match action {
+                Action::Quicksave => {
+                    self.quick.push_back(self.world.clone());
+                    if self.quick.len() > QUICK_SLOTS {
+                        self.quick.pop_front();
+                    }
+                    events.push(Event::QuickSaved);
+                }
+                Action::Quickload => match self.quick.back() {
+                    Some(kept) => {
+                        self.world = kept.clone();
+                        events.push(Event::QuickLoaded);
+                    }
+                    None => events.push(Event::NothingToLoad),
+                },
+                _ => {}
+            }
+        }
+        self.world.tick(commands);
+        self.ticks += 1;
+        events
+    }
+}

@@ -8,3 +8,4 @@ pub mod rig;
 pub mod snapshot;
 
 pub use rig::{CameraMode, Eye, Rig};
+pub use snapshot::{Picture, snapshot};
