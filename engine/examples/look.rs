@@ -3,7 +3,7 @@
 //! Not here: real orbits, maps or terrain (`syzygy shot` has them).
 
 use engine::gpu::{BackendChoice, Gpu, ShaderLibrary};
-use engine::render::{OffscreenImage, Renderer, RendererOptions, Target};
+use engine::render::{OffscreenImage, Renderer, RendererOptions, StarCatalogue, Target};
 use engine::scene::{AutoOr, Body, Camera, Force, Occluder, Ship, Snapshot, Star, Surface};
 use engine::units::AU;
 use glam::{DVec3, Quat, Vec3};
@@ -107,6 +107,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let gpu = Gpu::headless(BackendChoice::Auto)?;
     let started = std::time::Instant::now();
     let mut renderer = Renderer::new(&gpu, RendererOptions { shaders: ShaderLibrary::checkout(), measure: true })?;
+    let stars = concat!(env!("CARGO_MANIFEST_DIR"), "/../assets/stars/stars.bin");
+    renderer.set_stars(&gpu, StarCatalogue::parse(&std::fs::read(stars)?)?);
     println!("{} · passes compiled in {:.2} s", gpu.info.name, started.elapsed().as_secs_f64());
     let image = OffscreenImage::new(&gpu, size);
     for (name, scene) in scenes(size).into_iter().filter(|(n, _)| only.is_none_or(|o| o == n)) {

@@ -6,7 +6,7 @@
 struct Meter {
     range: vec4<f32>,  // log2 of the luminance of the first bin, bins per stop, compensation in stops, 0
     trim: vec4<f32>,   // share left out below, share up to which is counted, adaptation to light and to dark, 1/s
-    limit: vec4<f32>,  // lowest and highest average luminance exposed for, cd/m², 0, 0
+    limit: vec4<f32>,  // lowest and highest EV at ISO 100, 0, 0
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;
@@ -26,9 +26,9 @@ fn count_pixels(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_inv
     if all(pixel < textureDimensions(lit)) {
         let y = luminance_of(textureLoad(lit, pixel, 0).rgb) / exposure.pre;
         // What is darker than the first bin (empty space) says nothing of the light: it is not counted.
-        let bin = (log2(max(y, 1e-20)) - meter.range.x) * meter.range.y;
-        if bin >= 0.0 {
-            atomicAdd(&local_bins[min(u32(bin), 255u)], 1u);
+        let x = (log2(max(y, 1e-20)) - meter.range.x) * meter.range.y;
+        if x >= 0.0 {
+            atomicAdd(&local_bins[u32(min(1.0 + x, 255.0))], 1u);
         }
     }
     workgroupBarrier();
@@ -38,39 +38,38 @@ fn count_pixels(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_inv
     }
 }
 
+// One step of adaptation. Twin of engine::light::exposure::{ev100_of_histogram, adapt, exposure_of_ev100}.
 @compute @workgroup_size(1)
 fn settle() {
     var total = 0.0;
-    for (var i = 0u; i < 256u; i++) {
+    for (var i = 1u; i < 256u; i++) {
         total += f32(atomicLoad(&histogram[i]));
     }
     // Mean of log luminance between two percentiles.
-    var below = 0.0;
+    var before = 0.0;
     var sum = 0.0;
     var weight = 0.0;
-    for (var i = 0u; i < 256u; i++) {
-        let n = f32(atomicLoad(&histogram[i]));
-        let inside = max(min(below + n, total * meter.trim.y) - max(below, total * meter.trim.x), 0.0);
-        sum += inside * (f32(i) + 0.5);
+    for (var i = 1u; i < 256u; i++) {
+        let after = before + f32(atomicLoad(&histogram[i]));
+        let inside = max(min(after, total * meter.trim.y) - max(before, total * meter.trim.x), 0.0);
+        sum += inside * ((f32(i) - 0.5) / meter.range.y + meter.range.x);
         weight += inside;
-        below += n;
+        before = after;
     }
-    // An empty picture is exposed for the darkest.
-    var target_log = log2(meter.limit.x);
+    // EV100 = log2(L · 100 / 12.5); a picture with nothing in it is exposed for the darkest.
+    var ev = meter.limit.x;
     if weight > 0.0 {
-        target_log = clamp(sum / weight / meter.range.y + meter.range.x, log2(meter.limit.x), log2(meter.limit.y));
+        ev = clamp(sum / weight + 3.0, meter.limit.x, meter.limit.y);
     }
-    var log_average = target_log;
     if exposure.settled > 0.5 && frame.forward.w >= 0.0 {
-        let old = log2(max(exposure.average, 1e-12));
-        let rate = select(meter.trim.w, meter.trim.z, target_log > old);
-        log_average = target_log + (old - target_log) * exp(-frame.forward.w * rate);
+        let now = log2(max(exposure.average, 1e-12)) + 3.0;
+        let rate = select(meter.trim.w, meter.trim.z, ev > now);
+        ev += (now - ev) * exp(-rate * frame.forward.w);
     }
-    let average = exp2(log_average);
-    // EV100 = log2(8 L); luminance 1.2 · 2^EV becomes 1 [Lagarde & de Rousiers 2014, §5.1].
-    let wanted = exp2(meter.range.z) / (9.6 * average);
+    // Luminance 1.2 · 2^EV becomes 1 [Lagarde & de Rousiers 2014, §5.1.2]; compensation brightens.
+    let wanted = exp2(meter.range.z - ev) / 1.2;
     next.pre = wanted;
     next.final_ = wanted;
-    next.average = average;
+    next.average = exp2(ev - 3.0);
     next.settled = 1.0;
 }

@@ -7,9 +7,13 @@
 @group(0) @binding(2) var<uniform> exposure: Exposure;
 @group(1) @binding(0) var lit: texture_2d<f32>;
 @group(1) @binding(1) var<uniform> wanted: Exposure;
+@group(1) @binding(2) var glare: texture_2d<f32>;
+@group(1) @binding(3) var linear: sampler;
 
 // 1 where the target keeps what it is given (we encode), 0 where it encodes itself.
 override encode: f32 = 1.0;
+// Share of the light that the glare takes.
+override glare_share: f32 = 0.0;
 
 struct Varying {
     @builtin(position) position: vec4<f32>,
@@ -55,7 +59,9 @@ fn noise(pixel: vec2<f32>) -> f32 {
 
 @fragment
 fn fragment(in: Varying) -> @location(0) vec4<f32> {
-    let hdr = textureLoad(lit, vec2<u32>(in.position.xy), 0).rgb * (wanted.final_ / exposure.pre);
+    let sharp = textureLoad(lit, vec2<u32>(in.position.xy), 0).rgb;
+    let spread = textureSampleLevel(glare, linear, in.uv, 0.0).rgb;
+    let hdr = mix(sharp, spread, glare_share) * (wanted.final_ / exposure.pre);
     let shift = f32(frame.counts.y % 64u) * 5.588238;
     let dither = noise(in.position.xy + shift) - 0.5;
     let encoded = srgb_encode(agx(hdr)) + dither / 255.0;

@@ -12,6 +12,8 @@ pub const LOG2_MIN: f32 = -20.0;
 pub const LOG2_MAX: f32 = 32.0;
 /// The meter averages log-luminance between these fractions of the counted pixels: black space and the sun's glint do not vote.
 pub const METER_RANGE: [f32; 2] = [0.5, 0.95];
+/// Rates of adaptation to brighter and to darker light, 1/s.
+pub const ADAPT_PER_S: [f32; 2] = [3.0, 1.5];
 /// EV100 that a meter which sees nothing gives: a starry night.
 pub const EV100_DARK: f32 = -6.0;
 
@@ -51,7 +53,7 @@ pub fn ev100_of_histogram(bins: &[u32]) -> f32 {
 
 /// EV100 after `dt_s` seconds of adaptation from `now` towards `goal`: exponential, quicker to bright light than to dark.
 pub fn adapt(now_ev100: f32, goal_ev100: f32, dt_s: f32) -> f32 {
-    let rate_per_s = if goal_ev100 > now_ev100 { 3.0 } else { 1.5 };
+    let rate_per_s = if goal_ev100 > now_ev100 { ADAPT_PER_S[0] } else { ADAPT_PER_S[1] };
     goal_ev100 + (now_ev100 - goal_ev100) * (-rate_per_s * dt_s.max(0.0)).exp()
 }
 

@@ -53,8 +53,11 @@ pub fn draw(
         passes.exposure.record(&mut f, &lit);
     }
 
+    f.runs("bloom", None);
+    let glare = passes.bloom.record(&mut f, &lit);
+
     f.runs("tonemap", None);
-    passes.tonemap.record(&mut f, &lit, view, format);
+    passes.tonemap.record(&mut f, &lit, &glare, view, format);
 
     let skip = overlay.is_none().then(|| "nothing is painted over the picture".to_owned());
     if let (true, Some(overlay)) = (f.runs("overlay", skip), overlay) {
@@ -77,6 +80,16 @@ fn light(f: &mut FrameContext<'_>, passes: &mut Passes) -> Result<wgpu::TextureV
     let skip = passes.smooth_body.skip(f.scene);
     if f.runs("smooth_body", skip) {
         passes.smooth_body.record(f, &light);
+    }
+
+    let skip = passes.sun_disc.skip(f.scene);
+    if f.runs("sun_disc", skip) {
+        passes.sun_disc.record(f);
+    }
+
+    let skip = passes.stars.skip(f.scene);
+    if f.runs("stars", skip) {
+        passes.stars.record(f);
     }
 
     Ok(f.targets.opaque.view.clone())

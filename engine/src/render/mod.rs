@@ -14,6 +14,7 @@ pub mod targets;
 
 pub use image::{HdrImage, OffscreenImage};
 pub use maps::{BodyMaps, ColourMap};
+pub use pass::stars::StarCatalogue;
 pub use report::{FrameReport, PassReport};
 
 use crate::gpu::readback;
@@ -110,6 +111,7 @@ pub struct Renderer {
     pub(crate) targets: Option<Targets>,
     pub(crate) maps: MapStore,
     pub(crate) timer: Timer,
+    pub(crate) catalogue: StarCatalogue,
     pub(crate) options: RendererOptions,
     /// Frames drawn.
     pub(crate) number: u32,
@@ -126,7 +128,18 @@ impl Renderer {
         let maps = MapStore::new(gpu);
         let passes = Passes::new(gpu, &options.shaders, &shared, &maps)?;
         let timer = Timer::new(gpu);
-        let renderer = Self { shared, passes, targets: None, maps, timer, options, number: 0, through_air: false, exposed: false };
+        let renderer = Self {
+            shared,
+            passes,
+            targets: None,
+            maps,
+            timer,
+            catalogue: StarCatalogue::default(),
+            options,
+            number: 0,
+            through_air: false,
+            exposed: false,
+        };
         match gpu.take_error() {
             Some(e) => Err(RenderError::Refused(e)),
             None => Ok(renderer),
@@ -140,6 +153,7 @@ impl Renderer {
             return Err(RenderError::Refused(e));
         }
         self.passes = passes;
+        self.passes.stars.set_catalogue(gpu, &self.catalogue);
         self.exposed = false;
         Ok(())
     }
@@ -147,6 +161,12 @@ impl Renderer {
     /// Gives a body its maps; bodies without any are drawn in their mean albedo. `id` is [`crate::scene::Body::id`].
     pub fn register_body(&mut self, gpu: &Gpu, id: u16, maps: &BodyMaps) -> Result<(), RenderError> {
         self.maps.register(gpu, id, maps)
+    }
+
+    /// Replaces the stars of the sky; there are none before.
+    pub fn set_stars(&mut self, gpu: &Gpu, catalogue: StarCatalogue) {
+        self.passes.stars.set_catalogue(gpu, &catalogue);
+        self.catalogue = catalogue;
     }
 
     /// Draws one frame: [`frame::draw`], submitted. Stills (`adapt_s: None`) wait for the pass times if they are measured.

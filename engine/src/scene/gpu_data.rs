@@ -162,9 +162,14 @@ pub struct MeterUniform {
 }
 
 impl MeterUniform {
-    /// The light meter: 2^-10 … 2^22 cd/m² in eighths of a stop, counted between the 50th and 98th percentile, adapting to
-    /// light in about 0.4 s and to dark in about 1.2 s, exposing for 0.02 … 60,000 cd/m².
-    pub const fn new(compensation_ev: f32) -> Self {
-        Self { range: [-10.0, 8.0, compensation_ev, 0.0], trim: [0.5, 0.98, 2.5, 0.8], limit: [0.02, 6.0e4, 0.0, 0.0] }
+    /// The light meter of [`crate::light::exposure`], between EV −6 (a starry night) and EV 20.
+    pub fn new(compensation_ev: f32) -> Self {
+        use crate::light::exposure::{ADAPT_PER_S, BINS, EV100_DARK, LOG2_MAX, LOG2_MIN, METER_RANGE};
+        let per_stop = (BINS - 1) as f32 / (LOG2_MAX - LOG2_MIN);
+        Self {
+            range: [LOG2_MIN, per_stop, compensation_ev, 0.0],
+            trim: [METER_RANGE[0], METER_RANGE[1], ADAPT_PER_S[0], ADAPT_PER_S[1]],
+            limit: [EV100_DARK, 20.0, 0.0, 0.0],
+        }
     }
 }

@@ -2,8 +2,11 @@
 //!
 //! A pass has `new` (compiles), `skip` (why the scene does not need it, in words) and `record`.
 
+pub mod bloom;
 pub mod exposure;
 pub mod smooth_body;
+pub mod stars;
+pub mod sun_disc;
 pub mod tonemap;
 
 use super::RenderError;
@@ -20,6 +23,12 @@ pub struct Passes {
     pub no_shadow: ShadowMap,
     /// Spheres without terrain.
     pub smooth_body: smooth_body::SmoothBody,
+    /// Points of light.
+    pub stars: stars::Stars,
+    /// The star's disc.
+    pub sun_disc: sun_disc::SunDisc,
+    /// Glare.
+    pub bloom: bloom::Bloom,
     /// Histogram and adaptation.
     pub exposure: exposure::Exposure,
     /// HDR to the screen.
@@ -33,6 +42,9 @@ impl Passes {
             vacuum: AirTables::vacuum(gpu),
             no_shadow: ShadowMap::none(gpu),
             smooth_body: smooth_body::SmoothBody::new(gpu, shaders, shared, maps)?,
+            stars: stars::Stars::new(gpu, shaders, shared)?,
+            sun_disc: sun_disc::SunDisc::new(gpu, shaders, shared)?,
+            bloom: bloom::Bloom::new(gpu, shaders, shared)?,
             exposure: exposure::Exposure::new(gpu, shaders, shared)?,
             tonemap: tonemap::Tonemap::new(gpu, shaders, shared)?,
         })

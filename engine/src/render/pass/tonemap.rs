@@ -2,7 +2,8 @@
 
 use crate::gpu::{Gpu, ShaderLibrary};
 use crate::render::RenderError;
-use crate::render::pipeline::{PipelineKind, texture_entry, uniform_entry};
+use crate::render::pass::bloom;
+use crate::render::pipeline::{PipelineKind, sampler_entry, texture_entry, uniform_entry};
 use crate::render::shared::{FrameContext, Shared};
 use std::collections::BTreeMap;
 use wgpu::BindGroupEntry;
@@ -22,15 +23,27 @@ impl Tonemap {
         let module = shaders.load(&gpu.device, "pass/tonemap.wgsl")?;
         let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("tonemap"),
-            entries: &[texture_entry(0, wgpu::TextureViewDimension::D2), uniform_entry(1)],
+            entries: &[
+                texture_entry(0, wgpu::TextureViewDimension::D2),
+                uniform_entry(1),
+                texture_entry(2, wgpu::TextureViewDimension::D2),
+                sampler_entry(3, wgpu::SamplerBindingType::Filtering),
+            ],
         });
         Ok(Self { module, layout, frame_layout: shared.frame_layout.clone(), pipelines: BTreeMap::new() })
     }
 
-    /// Writes the picture.
-    pub fn record(&mut self, f: &mut FrameContext<'_>, lit: &wgpu::TextureView, view: &wgpu::TextureView, format: wgpu::TextureFormat) {
+    /// Writes the picture from the light and its glare.
+    pub fn record(
+        &mut self,
+        f: &mut FrameContext<'_>,
+        lit: &wgpu::TextureView,
+        glare: &wgpu::TextureView,
+        view: &wgpu::TextureView,
+        format: wgpu::TextureFormat,
+    ) {
         let pipeline = self.pipelines.entry(format!("{format:?}")).or_insert_with(|| {
-            let constants = [("encode", f64::from(u8::from(!format.is_srgb())))];
+            let constants = [("encode", f64::from(u8::from(!format.is_srgb()))), ("glare_share", f64::from(bloom::SHARE))];
             let groups = [&self.frame_layout, &self.layout];
             PipelineKind { constants: &constants, ..PipelineKind::full_screen("tonemap", &self.module, &groups, format) }.make(f.gpu)
         });
@@ -40,6 +53,8 @@ impl Tonemap {
             entries: &[
                 BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(lit) },
                 BindGroupEntry { binding: 1, resource: f.shared.exposure_next.buffer.as_entire_binding() },
+                BindGroupEntry { binding: 2, resource: wgpu::BindingResource::TextureView(glare) },
+                BindGroupEntry { binding: 3, resource: wgpu::BindingResource::Sampler(&f.shared.linear) },
             ],
         });
         let mut pass = f.draw_full_screen("tonemap", view, false);
