@@ -139,6 +139,7 @@ impl World {
                 Phase::Approach { brake } => (2, brake.ticks),
                 Phase::Brake => (3, 0),
                 Phase::Descend => (4, 0),
+                Phase::Touchdown => (5, 0),
             };
             f.int("guidance", "landing.phase", phase);
             f.int("guidance", "landing.at", at);

@@ -1,10 +1,10 @@
 //! Aerodynamics: a simple, stated model, the same at every Mach number.
 //!
 //! With q = ½ρV², α the angle of attack, β the sideslip (angles of the air's approach in hull axes):
-//! - attached flow: CL = a·sin α·cos α, CD = CD0 + k·CL² (the drag polar);
-//! - separated flow (a flat plate): CN = C_belly·sin α·|sin α| normal to the hull; CL = CN·cos α, CD = CD0 + CN·sin α;
-//! - the two blend over [`STALL_WIDTH_DEG`] above the stall angle;
-//! - side force and drag alike from C_side and β;
+//! - attached flow: CL = a·sin α·cos α, CD = k·CL² (with CD0 the drag polar CD = CD0 + k·CL²);
+//! - separated flow: the hull is a plate that is pushed along its normal, C_belly·sin α·|sin α|;
+//! - the two blend over [`STALL_WIDTH_DEG`] above the stall angle; CD0 acts along the flow at all angles;
+//! - sideways the hull is a plate too: C_side·sin β·|sin β|;
 //! - moments: weathercock −C·sin α and −C·sin β, rate damping −C·ωc/2V, controls up to C_control, all times q S c.
 //!
 //! Heating: Sutton & Graves 1971 (NASA TR R-376), q̇ = k·√(ρ/r_n)·V³ with k by gas.
@@ -41,19 +41,14 @@ pub fn load(spec: &Aero, density: f64, velocity: DVec3, rate: DVec3) -> AirLoad 
     // Sine of the angle of attack (belly towards the flow positive) and of the sideslip (flow from the right positive).
     let (sin_a, sin_b) = (-along.y, along.x);
     let cos_a = -along.z;
-    let alpha = libm::atan2(sin_a, cos_a.abs()).abs();
+    let alpha = libm::atan2(sin_a.abs(), cos_a.abs());
     let separated = smooth((alpha / DEG - spec.stall_deg) / STALL_WIDTH_DEG);
-    let plate = spec.belly_drag * sin_a * sin_a.abs();
-    let cl_attached = spec.lift_slope_per_rad * sin_a * cos_a;
-    let cl = cl_attached + separated * (plate * cos_a - cl_attached);
-    let cd_attached = spec.induced_drag * cl_attached * cl_attached;
-    let cd_belly = cd_attached + separated * (plate * sin_a - cd_attached);
-    let side = spec.side_drag * sin_b * sin_b.abs();
-    let cd = spec.cd0 + cd_belly + side * sin_b;
+    let cl = spec.lift_slope_per_rad * sin_a * cos_a;
     let lift_axis = (DVec3::Y - along * along.y).normalize_or(DVec3::ZERO);
-    let side_axis = (DVec3::X - along * along.x).normalize_or(DVec3::ZERO);
-    let cos_b = (1.0 - sin_b * sin_b).max(0.0).sqrt();
-    let force = (lift_axis * cl - along * cd - side_axis * (side * cos_b)) * qs;
+    let attached = lift_axis * cl - along * (spec.induced_drag * cl * cl);
+    let plate = DVec3::Y * (spec.belly_drag * sin_a * sin_a.abs());
+    let side = DVec3::X * (-spec.side_drag * sin_b * sin_b.abs());
+    let force = (attached.lerp(plate, separated) + side - along * spec.cd0) * qs;
     let weathercock = DVec3::new(-spec.pitch_stability_per_rad * sin_a, -spec.yaw_stability_per_rad * sin_b, 0.0);
     let damping = rate * (-spec.damping * spec.reference_length_m / (2.0 * speed));
     AirLoad { force, moment: (weathercock + damping) * qsc, control: spec.control * qsc }

@@ -2,8 +2,8 @@
 //!
 //! The controller knows inertia and disturbance exactly (it is part of the simulated ship), so its inner loop asks for
 //! the torque that reaches the wanted rate within the tick, cut to what wheels, thrusters and control surfaces give.
-//! The outer loop approaches an attitude along `ω = min(k·e, √(2α(e − α/2k²)))`: at half the available
-//! deceleration, therefore without overshoot. A rate that is reached is reached exactly: no limit cycle remains.
+//! The outer loop approaches an attitude along `ω = min(k·e, √(2α(e − α/2k²)))`: at seven tenths of the
+//! available deceleration, therefore without overshoot. A rate that is reached is reached exactly: no limit cycle remains.
 
 use super::local::Local;
 use crate::command::{Hold, Target};
@@ -15,7 +15,7 @@ use engine::units::DEG;
 use glam::{DMat3, DQuat, DVec3};
 
 /// Gain of the linear part of the approach, 1/s.
-const GAIN_PER_S: f64 = 3.0;
+const GAIN_PER_S: f64 = 4.0;
 /// Attitude error under which the hull counts as settled, rad.
 const SETTLED_RAD: f64 = 1.0e-3;
 /// Rate error under which the hull counts as settled, rad/s.
@@ -114,7 +114,7 @@ fn approach(plant: &Plant, error: DVec3) -> DVec3 {
     }
     let axis = error / angle;
     let share = axis.abs().max(DVec3::splat(1e-6));
-    let alpha = 0.5 * (plant.torque / plant.inertia / share).min_element();
+    let alpha = 0.7 * (plant.torque / plant.inertia / share).min_element();
     let linear = alpha / (GAIN_PER_S * GAIN_PER_S);
     let speed = if angle < linear { GAIN_PER_S * angle } else { (2.0 * alpha * (angle - 0.5 * linear)).sqrt() };
     axis * speed.min((plant.max_rate / share).min_element())

@@ -7,7 +7,7 @@
 
 use super::attitude::{self, Demand, Plant, Turn};
 use super::local::{self, Local, gravity};
-use super::{Effort, Motion, Rigid, Ship, aero, guidance, thrust};
+use super::{Effort, Rigid, Ship, aero, guidance, thrust};
 use crate::command::{Axes, Guidance, Hold, Target};
 use engine::orbit::State;
 use engine::space::{Position, Rotation, Vector, Velocity};
@@ -182,16 +182,11 @@ pub fn stirred(ship: &Ship, axes: Axes) -> bool {
     }
 }
 
-/// Height of the centre of mass above the ground, m; computed only where the ground can be near.
-pub fn height_above_ground_m(local: &Local) -> f64 {
+/// Height of the ground below the ship above the datum, m; the datum itself where the ground cannot be near.
+pub fn surface_below_m(local: &Local) -> f64 {
     if local.altitude_m > super::warp::floor_m(local.body).max(20_000.0) {
-        local.altitude_m
+        0.0
     } else {
-        local.altitude_m - local::ground_m(local.body, local.direction_fixed())
+        local::ground_m(local.body, local.direction_fixed())
     }
-}
-
-/// Is `motion` one that is integrated?
-pub fn integrated(motion: &Motion) -> bool {
-    matches!(motion, Motion::Fly(_) | Motion::Contact(_))
 }

@@ -3,9 +3,10 @@
 //!
 //! All of it runs in the physical tick, from the state alone, so it is the same at every warp and in every replay.
 //! Lift comes from the nozzles turned down; the roof points along the wanted push, never further than a tilt limit from
-//! the zenith near the ground.
+//! the zenith while hovering.
 
 pub mod landing;
+pub mod plan;
 
 use super::attitude::{self, Demand};
 use super::flight::Controls;
@@ -18,6 +19,8 @@ pub use landing::{Landing, Phase};
 
 /// Largest tilt of the roof from the zenith while hovering, rad.
 const HOVER_TILT_RAD: f64 = 30.0 * DEG;
+/// Cosine of the angle between roof and wanted push beyond which the engine is silent.
+const READY: f64 = 0.9;
 
 /// The controls of a tick under guidance.
 pub fn controls(ship: &mut Ship, local: &Local, rigid: &Rigid, axes: Axes, target: Option<Target>) -> Controls {
@@ -31,46 +34,34 @@ pub fn controls(ship: &mut Ship, local: &Local, rigid: &Rigid, axes: Axes, targe
 /// Holds a rate of climb and brings the horizontal speed to zero; the stick still turns the heading.
 fn hover(ship: &Ship, local: &Local, rigid: &Rigid, axes: Axes, climb_m_s: f64) -> Controls {
     let limit = 0.9 * ship.spec.main_engine.thrust_n / ship.mass_kg();
+    let gravity = local.gravity().length();
     let level = local.v_surface - local.up * local.v_surface.dot(local.up);
-    let sideways = (-level / 2.0).clamp_length_max(0.4 * limit);
-    let upwards = ((climb_m_s - local.vertical_m_s()) / 0.7).clamp(-0.5 * limit, limit);
+    let reach = libm::tan(HOVER_TILT_RAD) * gravity.max(0.2 * limit);
+    let sideways = (-level / 3.0).clamp_length_max(reach);
+    let upwards = ((climb_m_s - local.vertical_m_s()) / 0.7).clamp(-gravity, limit);
     let push = sideways + local.up * upwards - weight(local);
+    let lift = push.dot(local.up).max(gravity.max(0.2 * limit));
     let yaw = Axes::value(axes.yaw) * ship.spec.attitude.max_rate_deg_s.y * DEG;
-    Controls { translation: thrust::translation(axes), ..fly_along(ship, local, rigid, push, HOVER_TILT_RAD, yaw) }
+    Controls { translation: thrust::translation(axes), ..fly_along(ship, local, rigid, push, sideways + local.up * lift, yaw) }
 }
 
-/// Acceleration that gravity and the curve of the path ask the engine to carry, m/s², pointing down: gravity less the
-/// centrifugal acceleration of the velocity over the turning ground's inertial motion.
+/// What the engine must carry for level flight at the present speed, m/s², pointing down: gravity less the centrifugal
+/// acceleration of the horizontal (inertial) velocity.
 pub fn weight(local: &Local) -> DVec3 {
     let level = local.v - local.up * local.v.dot(local.up);
-    let radius = local.r.length().max(1.0);
-    local.gravity() + local.up * (level.length_squared() / radius)
+    local.gravity() + local.up * (level.length_squared() / local.r.length().max(1.0))
 }
 
-/// Points the roof along `push` (m/s², ICRF axes), within `tilt` of the zenith, and throttles by what of it lies along the
-/// roof now. `yaw_rad_s` turns about the roof.
-pub fn fly_along(ship: &Ship, local: &Local, rigid: &Rigid, push: DVec3, tilt: f64, yaw_rad_s: f64) -> Controls {
-    let air =
-        super::aero::load(&ship.spec.aero, local.air.density_kg_m3, rigid.icrf_from_hull.0.conjugate() * local.v_surface, DVec3::ZERO);
-    // What the air does already need not be thrust.
-    let push = push - rigid.icrf_from_hull.0 * air.force / ship.mass_kg();
-    let roof = within(local.up, push, tilt);
-    let now = rigid.icrf_from_hull.0 * DVec3::Y;
-    let along = push.dot(now);
-    let agreement = now.dot(roof);
-    let throttle = if agreement > 0.5 && ship.nozzle > 0.9 { along * ship.mass_kg() / ship.spec.main_engine.thrust_n } else { 0.0 };
-    let reference = attitude::raise_roof(rigid.icrf_from_hull.0, roof);
-    let demand = Demand::Point { reference, rate: DVec3::Y * yaw_rad_s };
-    Controls { demand, throttle: throttle.clamp(0.0, 1.0), nozzle: 1.0, translation: DVec3::ZERO }
-}
-
-/// The direction of `push`, bent towards `up` until it lies within `tilt` of it.
-pub fn within(up: DVec3, push: DVec3, tilt: f64) -> DVec3 {
-    let level = push - up * push.dot(up);
-    let (height, width) = (push.dot(up), level.length());
-    if width < 1e-9 || libm::atan2(width, height) <= tilt {
-        return if tilt < core::f64::consts::PI && height <= 0.0 && width < 1e-9 { up } else { push.normalize_or(up) };
-    }
-    let (s, c) = libm::sincos(tilt);
-    up * c + level * (s / width)
+/// Points the roof along `roof` and throttles so that the push along the roof is what `push` (m/s², ICRF axes) asks for,
+/// less what the air does already. The engine is silent while the roof is far off. `yaw_rad_s` turns about the roof.
+pub fn fly_along(ship: &Ship, local: &Local, rigid: &Rigid, push: DVec3, roof: DVec3, yaw_rad_s: f64) -> Controls {
+    let q = rigid.icrf_from_hull.0;
+    let air = super::aero::load(&ship.spec.aero, local.air.density_kg_m3, q.conjugate() * local.v_surface, DVec3::ZERO);
+    let now = q * DVec3::Y;
+    let wanted = roof.normalize_or(now);
+    let push_n = (push * ship.mass_kg() - q * air.force).dot(now);
+    let ready = now.dot(wanted) > READY && ship.nozzle > 0.95;
+    let throttle = if ready { (push_n / ship.spec.main_engine.thrust_n).clamp(0.0, 1.0) } else { 0.0 };
+    let reference = attitude::raise_roof(q, wanted);
+    Controls { demand: Demand::Point { reference, rate: DVec3::Y * yaw_rad_s }, throttle, nozzle: 1.0, translation: DVec3::ZERO }
 }
