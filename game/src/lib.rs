@@ -11,6 +11,7 @@ pub mod hud;
 pub mod input;
 pub mod mode;
 pub mod picture;
+pub mod replay;
 pub mod save;
 pub mod session;
 pub mod sound;

@@ -1,0 +1,147 @@
+//! The player: gives a log's commands back tick by tick, and compares the World with what was recorded.
+//!
+//! A hash that differs names tick and subsystem. The field is named where the log keeps every field's bits: at that
+//! tick, or at the next such tick after it (the flight goes on until there).
+
+use super::log::{Log, Row};
+use crate::command::{Axes, Commands};
+use crate::world::World;
+use crate::world::fields::SUBSYSTEMS;
+use std::fmt;
+
+/// Where a run parted from its record.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Divergence {
+    /// First check at which a hash differs, ticks flown.
+    pub tick: u64,
+    /// The first subsystem that differs there.
+    pub subsystem: &'static str,
+    /// Its hash in the log and now.
+    pub hashes: (u64, u64),
+    /// The first field that differs, if one could be named.
+    pub field: Option<FieldDifference>,
+}
+
+/// A field that differs.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FieldDifference {
+    /// Where the bits were compared, ticks flown.
+    pub tick: u64,
+    /// Subsystem and field.
+    pub name: (String, String),
+    /// Recorded bits; `None` when the field was not there.
+    pub recorded: Option<u64>,
+    /// Bits now; `None` when the field is not there.
+    pub now: Option<u64>,
+}
+
+impl fmt::Display for Divergence {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { tick, subsystem, hashes: (recorded, now), field } = self;
+        write!(f, "diverged at tick {tick} in `{subsystem}`: hash recorded {recorded:#018x}, now {now:#018x}")?;
+        let bits = |b: &Option<u64>| b.map_or_else(|| "absent".to_owned(), |b| format!("{b:#018x} ({:e})", f64::from_bits(b)));
+        match field {
+            Some(d) => {
+                let (subsystem, name) = &d.name;
+                write!(f, "; field `{subsystem}.{name}` at tick {}: recorded {}, now {}", d.tick, bits(&d.recorded), bits(&d.now))
+            }
+            None => write!(f, "; the log keeps no bits at or after that tick that differ"),
+        }
+    }
+}
+
+/// Plays a log.
+#[derive(Clone, Debug)]
+pub struct Player {
+    log: Log,
+    tick: u64,
+    run: (usize, u64),
+    action: usize,
+    check: usize,
+    row: usize,
+    diverged: Option<Divergence>,
+}
+
+impl Player {
+    /// From the beginning.
+    pub fn new(log: Log) -> Self {
+        Self { log, tick: 0, run: (0, 0), action: 0, check: 0, row: 0, diverged: None }
+    }
+
+    /// The log.
+    pub fn log(&self) -> &Log {
+        &self.log
+    }
+
+    /// Ticks played.
+    pub fn tick(&self) -> u64 {
+        self.tick
+    }
+
+    /// The commands of the next tick; `None` at the end.
+    pub fn next_commands(&mut self) -> Option<Commands> {
+        if self.tick >= self.log.ticks {
+            return None;
+        }
+        while self.log.runs.get(self.run.0).is_some_and(|r| self.run.1 >= r.ticks) {
+            self.run = (self.run.0 + 1, 0);
+        }
+        let axes = self.log.runs.get(self.run.0).map_or(Axes::default(), |r| r.axes);
+        self.run.1 += 1;
+        let mut actions = Vec::new();
+        while let Some((_, action)) = self.log.actions.get(self.action).filter(|(at, _)| *at == self.tick) {
+            actions.push(*action);
+            self.action += 1;
+        }
+        self.tick += 1;
+        Some(Commands { axes, actions })
+    }
+
+    /// Compares the World after the tick whose commands were given last. `Some` once a difference is found and, if the
+    /// log can, its field is named; the run should end then.
+    pub fn compare(&mut self, world: &World) -> Option<Divergence> {
+        if let Some(check) = self.log.checks.get(self.check).filter(|c| c.tick == self.tick) {
+            self.check += 1;
+            if self.diverged.is_none() {
+                let now = world.state_hash();
+                let parted = now.iter().zip(&check.hashes).position(|((_, now), recorded)| now != recorded);
+                self.diverged = parted.map(|i| Divergence {
+                    tick: self.tick,
+                    subsystem: SUBSYSTEMS[i],
+                    hashes: (check.hashes[i], now[i].1),
+                    field: None,
+                });
+            }
+        }
+        let row = self.log.rows.get(self.row).filter(|r| r.tick == self.tick);
+        self.row += usize::from(row.is_some());
+        let found = self.diverged.as_mut()?;
+        if let Some(row) = row {
+            found.field = difference(&self.log, row, world, found.subsystem);
+        }
+        let over = self.tick >= self.log.ticks || found.field.is_some();
+        over.then(|| found.clone())
+    }
+}
+
+/// The first field that differs: in `first` if there is one, else in any subsystem.
+fn difference(log: &Log, row: &Row, world: &World, first: &str) -> Option<FieldDifference> {
+    let now = world.fields();
+    let recorded: Vec<((&str, &str), u64)> =
+        row.fields.iter().filter_map(|(n, bits)| log.names.get(usize::from(*n)).map(|(s, f)| ((s.as_str(), f.as_str()), *bits))).collect();
+    let mut all: Vec<FieldDifference> = Vec::new();
+    for (name, bits) in &recorded {
+        let other = now.iter().find(|(s, f, _)| (*s, *f) == *name).map(|f| f.2);
+        if other != Some(*bits) {
+            let name = (name.0.to_owned(), name.1.to_owned());
+            all.push(FieldDifference { tick: row.tick, name, recorded: Some(*bits), now: other });
+        }
+    }
+    for (s, f, bits) in &now {
+        if !recorded.iter().any(|(name, _)| *name == (*s, *f)) {
+            all.push(FieldDifference { tick: row.tick, name: ((*s).to_owned(), (*f).to_owned()), recorded: None, now: Some(*bits) });
+        }
+    }
+    let best = all.iter().position(|d| d.name.0 == first).unwrap_or(0);
+    all.into_iter().nth(best)
+}

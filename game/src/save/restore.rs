@@ -1,0 +1,211 @@
+//! The way back: from what a save of format 1 says to a World, distrusting each number.
+//!
+//! All problems are found at once, each named by its field. Nothing is silently replaced by a default.
+
+use super::v1::{CoastAttitudeV1, LandingV1, MotionV1, PhaseV1, ReasonV1, RestingV1, RigidV1, SaveV1, StateV1};
+use crate::command::{Spot, Target, WARP_QUARTERS};
+use crate::world::World;
+use crate::world::ship::guidance::{Landing, Phase};
+use crate::world::ship::spec::ShipSpec;
+use crate::world::ship::warp::{Reason, Wake};
+use crate::world::ship::{Coast, CoastAttitude, Effort, Motion, Resting, Rigid, Ship};
+use crate::world::system::System;
+use engine::orbit::arc::Arc as OrbitArc;
+use engine::orbit::{BodyId, State};
+use engine::space::{Position, Rotation, Vector, Velocity};
+use engine::time::SimTime;
+use engine::units::{AU, SPEED_OF_LIGHT};
+use glam::{DQuat, DVec3};
+use std::sync::Arc;
+
+/// Farthest that a ship may be from its body: a light year or so.
+const FARTHEST_M: f64 = 63_241.0 * AU;
+/// Fastest turn that is believed, rad/s.
+const FASTEST_TURN_RAD_S: f64 = 1.0e3;
+/// Times that are believed, ticks: ±100,000 years.
+const FARTHEST_TICKS: i64 = 60 * 86_400 * 36_525_000;
+
+/// Collects what is wrong while it converts.
+struct Checker<'a> {
+    system: &'a System,
+    problems: Vec<String>,
+}
+
+impl SaveV1 {
+    /// The World that was saved.
+    ///
+    /// # Errors
+    /// Every field that cannot be right, with what was expected.
+    pub fn restore(&self, system: &Arc<System>, spec: &Arc<ShipSpec>) -> Result<World, Vec<String>> {
+        let mut c = Checker { system, problems: Vec::new() };
+        if self.system != system.key {
+            c.problems.push(format!("system: it was saved in `{}`, loaded is `{}`", self.system, system.key));
+        }
+        if self.ship_key != spec.key {
+            c.problems.push(format!("ship_key: it was saved with `{}`, loaded is `{}`", self.ship_key, spec.key));
+        }
+        let time = c.ticks("time_ticks", self.time_ticks);
+        let levels = WARP_QUARTERS.len();
+        for (field, value, below) in [("quarters", self.quarters, 4), ("warp", self.warp, levels), ("warp_asked", self.warp_asked, levels)]
+        {
+            if usize::from(value) >= below {
+                c.problems.push(format!("{field}: {value}, expected 0 to {}", below - 1));
+            }
+        }
+        let target = self.target.as_ref().map(|t| {
+            let spot = t.spot_udeg.map(|(lat_udeg, lon_udeg)| {
+                c.within("target.spot_udeg.0", f64::from(lat_udeg), -90e6, 90e6);
+                c.within("target.spot_udeg.1", f64::from(lon_udeg), -360e6, 360e6);
+                Spot { lat_udeg, lon_udeg }
+            });
+            Target { body: c.body("target.body", &t.body), spot }
+        });
+        let ship = c.ship(self, spec);
+        if c.problems.is_empty() {
+            let Self { quarters, warp, warp_asked, .. } = *self;
+            Ok(World { system: Arc::clone(system), time, quarters, warp, warp_asked, ship, target })
+        } else {
+            Err(c.problems)
+        }
+    }
+}
+
+impl Checker<'_> {
+    fn within(&mut self, field: &str, x: f64, low: f64, high: f64) -> f64 {
+        if !x.is_finite() || x < low || x > high {
+            self.problems.push(format!("{field}: {x}, expected {low} to {high}"));
+        }
+        x
+    }
+    fn ticks(&mut self, field: &str, ticks: i64) -> SimTime {
+        if !(-FARTHEST_TICKS..=FARTHEST_TICKS).contains(&ticks) {
+            self.problems.push(format!("{field}: {ticks}, expected a tick within 100,000 years of J2000"));
+        }
+        SimTime::from_ticks(ticks)
+    }
+    fn body(&mut self, field: &str, key: &str) -> BodyId {
+        self.system.find(key).unwrap_or_else(|| {
+            let nearest = crate::save::nearest(key, self.system.bodies.iter().map(|b| b.key.as_str()));
+            self.problems.push(format!("{field}: the system `{}` has no body `{key}`{nearest}", self.system.key));
+            BodyId(0)
+        })
+    }
+    fn vector(&mut self, field: &str, v: [f64; 3], longest: f64) -> DVec3 {
+        for (axis, x) in ["x", "y", "z"].into_iter().zip(v) {
+            self.within(&format!("{field}.{axis}"), x, -longest, longest);
+        }
+        DVec3::from_array(v)
+    }
+    fn rotation(&mut self, field: &str, q: [f64; 4]) -> DQuat {
+        let q = DQuat::from_array(q);
+        let length = q.length();
+        if !length.is_finite() || (length - 1.0).abs() > 1e-6 {
+            self.problems.push(format!("{field}: length {length}, expected a unit quaternion"));
+        }
+        q
+    }
+    fn state(&mut self, field: &str, s: &StateV1) -> (BodyId, State<engine::space::Centred>) {
+        let body = self.body(&format!("{field}.body"), &s.body);
+        let position = self.vector(&format!("{field}.position_m"), s.position_m, FARTHEST_M);
+        if position.length() < 1.0 {
+            self.problems.push(format!("{field}.position_m: at the body's centre, expected to be outside it"));
+        }
+        let velocity = self.vector(&format!("{field}.velocity_m_s"), s.velocity_m_s, SPEED_OF_LIGHT);
+        (body, State { position: Position::new(position), velocity: Velocity::new(velocity) })
+    }
+    fn rigid(&mut self, field: &str, r: &RigidV1) -> Rigid {
+        let (body, state) = self.state(&format!("{field}.state"), &r.state);
+        Rigid {
+            body,
+            state,
+            icrf_from_hull: Rotation::new(self.rotation(&format!("{field}.attitude"), r.attitude)),
+            rate: Vector::new(self.vector(&format!("{field}.rate_rad_s"), r.rate_rad_s, FASTEST_TURN_RAD_S)),
+        }
+    }
+    fn resting(&mut self, field: &str, r: &RestingV1) -> Resting {
+        let body = self.body(&format!("{field}.body"), &r.body);
+        let radius = self.system.body(body).radius_m;
+        let position = self.vector(&format!("{field}.position_m"), r.position_m, 2.0 * radius);
+        let height = position.length();
+        if !(0.5 * radius..=2.0 * radius).contains(&height) {
+            self.problems.push(format!("{field}.position_m: {height} m from the centre, expected to stand on the ground"));
+        }
+        let attitude = self.rotation(&format!("{field}.attitude"), r.attitude);
+        Resting { body, position: Position::new(position), fixed_from_hull: Rotation::new(attitude) }
+    }
+    fn motion(&mut self, now: i64, m: &MotionV1) -> Motion {
+        match m {
+            MotionV1::Fly(r) => Motion::Fly(self.rigid("ship.motion.Fly", r)),
+            MotionV1::Contact(r) => Motion::Contact(self.rigid("ship.motion.Contact", r)),
+            MotionV1::Landed(r) => Motion::Landed(self.resting("ship.motion.Landed", r)),
+            MotionV1::Crashed(r) => Motion::Crashed(self.resting("ship.motion.Crashed", r)),
+            MotionV1::Coast { epoch_ticks, state, attitude, wake_ticks, wake_reason } => {
+                let (body, state) = self.state("ship.motion.Coast.state", state);
+                let epoch = self.ticks("ship.motion.Coast.epoch_ticks", *epoch_ticks);
+                let at = self.ticks("ship.motion.Coast.wake_ticks", *wake_ticks);
+                if at.ticks < now {
+                    self.problems.push(format!("ship.motion.Coast.wake_ticks: {} lies before time_ticks ({now})", at.ticks));
+                }
+                let attitude = match attitude {
+                    CoastAttitudeV1::Inertial { attitude, rate_rad_s } => CoastAttitude::Inertial {
+                        icrf_from_hull: self.rotation("ship.motion.Coast.attitude.Inertial.attitude", *attitude),
+                        rate: self.vector("ship.motion.Coast.attitude.Inertial.rate_rad_s", *rate_rad_s, FASTEST_TURN_RAD_S),
+                    },
+                    CoastAttitudeV1::Held { hold, offset } => {
+                        CoastAttitude::Held { hold: *hold, offset: self.rotation("ship.motion.Coast.attitude.Held.offset", *offset) }
+                    }
+                };
+                let reason = match wake_reason {
+                    ReasonV1::Horizon => Reason::Horizon,
+                    ReasonV1::Low => Reason::Low,
+                    ReasonV1::Leave => Reason::Leave,
+                    ReasonV1::Enter(key) => Reason::Enter(self.body("ship.motion.Coast.wake_reason.Enter", key)),
+                    ReasonV1::Guidance => Reason::Guidance,
+                };
+                let gm_m3_s2 = self.system.body(body).gm_m3_s2;
+                Motion::Coast(Coast { arc: OrbitArc { body, gm_m3_s2, epoch, state }, attitude, wake: Wake { at, reason } })
+            }
+        }
+    }
+    fn landing(&mut self, l: &LandingV1) -> Landing {
+        let body = self.body("ship.landing.body", &l.body);
+        let spot = self.vector("ship.landing.spot", l.spot, 1.0 + 1e-9);
+        if (spot.length() - 1.0).abs() > 1e-6 {
+            self.problems.push(format!("ship.landing.spot: length {}, expected a unit vector", spot.length()));
+        }
+        let phase = match l.phase {
+            PhaseV1::Wait(at) => Phase::Wait { burn: self.ticks("ship.landing.phase.Wait", at) },
+            PhaseV1::Burn => Phase::Burn,
+            PhaseV1::Approach(at) => Phase::Approach { brake: self.ticks("ship.landing.phase.Approach", at) },
+            PhaseV1::Brake => Phase::Brake,
+            PhaseV1::Descend => Phase::Descend,
+        };
+        let ground_m = self.within("ship.landing.ground_m", l.ground_m, -1e6, 1e6);
+        let gate_m = self.within("ship.landing.gate_m", l.gate_m, -1e6, 1e7);
+        Landing { body, spot, ground_m, gate_m, phase }
+    }
+    fn ship(&mut self, save: &SaveV1, spec: &Arc<ShipSpec>) -> Ship {
+        let s = &save.ship;
+        let [throttle, rcs, felt_m_s2] = s.effort;
+        Ship {
+            spec: Arc::clone(spec),
+            motion: self.motion(save.time_ticks, &s.motion),
+            propellant_kg: self.within("ship.propellant_kg", s.propellant_kg, 0.0, spec.mass.propellant_kg),
+            throttle: s.throttle,
+            nozzle: self.within("ship.nozzle", s.nozzle, 0.0, 1.0),
+            gear_down: s.gear_down,
+            hold: s.hold,
+            held: s.held.map(|q| self.rotation("ship.held", q)),
+            guidance: s.guidance,
+            landing: s.landing.as_ref().map(|l| self.landing(l)),
+            effort: Effort {
+                throttle: self.within("ship.effort.0", throttle, 0.0, 1.0),
+                rcs: self.within("ship.effort.1", rcs, 0.0, 1.0e3),
+                felt_m_s2: self.within("ship.effort.2", felt_m_s2, 0.0, 1.0e9),
+            },
+            last_contact: s
+                .last_contact
+                .map(|(speed, at)| (self.within("ship.last_contact.0", speed, 0.0, SPEED_OF_LIGHT), self.ticks("ship.last_contact.1", at))),
+        }
+    }
+}

@@ -1,0 +1,326 @@
+//! Format 1: what is kept of a World, in structs of its own, so that the World may change without breaking old saves.
+//!
+//! Bodies are kept by key, not by index: a mod may add a moon. Everything a tick depends on is here; what follows from it
+//! (the contact bubble's colliders, the sky) is rebuilt. Floats keep every bit. The way back is in [`super::restore`],
+//! which distrusts each number.
+
+use crate::command::{Guidance, Hold};
+use crate::world::World;
+use crate::world::ship::guidance::{Landing, Phase};
+use crate::world::ship::warp::{Reason, Wake};
+use crate::world::ship::{Coast, CoastAttitude, Effort, Motion, Resting, Rigid, Ship};
+use crate::world::system::System;
+use engine::orbit::{BodyId, State};
+use engine::space::Centred;
+use glam::{DQuat, DVec3};
+use serde::{Deserialize, Serialize};
+
+/// A World, as kept.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SaveV1 {
+    /// Version of the program that wrote it.
+    pub game_version: String,
+    /// Folder of the system.
+    pub system: String,
+    /// Hash of the system's assets when it was written.
+    pub system_hash: String,
+    /// Key of the ship.
+    pub ship_key: String,
+    /// Ticks since J2000 TDB.
+    pub time_ticks: i64,
+    /// See [`World::quarters`].
+    pub quarters: u8,
+    /// See [`World::warp`].
+    pub warp: u8,
+    /// See [`World::warp_asked`].
+    pub warp_asked: u8,
+    /// What the pilot points at.
+    pub target: Option<TargetV1>,
+    /// The ship.
+    pub ship: ShipV1,
+}
+
+/// A target, as kept.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TargetV1 {
+    /// Key of the body.
+    pub body: String,
+    /// Latitude and east longitude of a spot, 1e-6 degrees.
+    pub spot_udeg: Option<(i32, i32)>,
+}
+
+/// A ship, as kept.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ShipV1 {
+    /// How it moves.
+    pub motion: MotionV1,
+    /// kg.
+    pub propellant_kg: f64,
+    /// 0 … 65535.
+    pub throttle: u16,
+    /// 0 … 1.
+    pub nozzle: f64,
+    /// Gear down?
+    pub gear_down: bool,
+    /// Attitude hold.
+    pub hold: Hold,
+    /// The attitude kept at rest, x y z w.
+    pub held: Option<[f64; 4]>,
+    /// Who flies the throttle.
+    pub guidance: Guidance,
+    /// The landing programme.
+    pub landing: Option<LandingV1>,
+    /// Throttle and RCS in force, felt acceleration in m/s².
+    pub effort: [f64; 3],
+    /// Speed (m/s) and tick of the last contact.
+    pub last_contact: Option<(f64, i64)>,
+}
+
+/// A motion, as kept.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum MotionV1 {
+    /// Sampled.
+    Coast {
+        /// Ticks since J2000 TDB.
+        epoch_ticks: i64,
+        /// Position and velocity at the epoch.
+        state: StateV1,
+        /// Attitude.
+        attitude: CoastAttitudeV1,
+        /// When the path must be looked at again.
+        wake_ticks: i64,
+        /// Why.
+        wake_reason: ReasonV1,
+    },
+    /// Integrated.
+    Fly(RigidV1),
+    /// Integrated near the ground.
+    Contact(RigidV1),
+    /// At rest.
+    Landed(RestingV1),
+    /// Broken.
+    Crashed(RestingV1),
+}
+
+/// A state, as kept.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StateV1 {
+    /// Key of the body.
+    pub body: String,
+    /// m from the body's centre, ICRF axes.
+    pub position_m: [f64; 3],
+    /// m/s.
+    pub velocity_m_s: [f64; 3],
+}
+
+/// A rigid body, as kept.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RigidV1 {
+    /// Position and velocity.
+    pub state: StateV1,
+    /// ICRF from hull, x y z w.
+    pub attitude: [f64; 4],
+    /// Hull axes, rad/s.
+    pub rate_rad_s: [f64; 3],
+}
+
+/// A ship at rest, as kept.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RestingV1 {
+    /// Key of the body.
+    pub body: String,
+    /// m, body-fixed axes.
+    pub position_m: [f64; 3],
+    /// Body-fixed from hull, x y z w.
+    pub attitude: [f64; 4],
+}
+
+/// Attitude of a coasting ship, as kept.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum CoastAttitudeV1 {
+    /// Turning at a constant rate.
+    Inertial {
+        /// ICRF from hull at the epoch, x y z w.
+        attitude: [f64; 4],
+        /// rad/s.
+        rate_rad_s: [f64; 3],
+    },
+    /// Held to a direction.
+    Held {
+        /// Which.
+        hold: Hold,
+        /// x y z w.
+        offset: [f64; 4],
+    },
+}
+
+/// Why a path must be looked at again, as kept.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum ReasonV1 {
+    /// Search on.
+    Horizon,
+    /// Air or ground.
+    Low,
+    /// Leaving the sphere of influence.
+    Leave,
+    /// Entering that of a body.
+    Enter(String),
+    /// The autopilot's.
+    Guidance,
+}
+
+/// A landing programme, as kept.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LandingV1 {
+    /// Key of the body.
+    pub body: String,
+    /// Unit vector, body-fixed axes.
+    pub spot: [f64; 3],
+    /// m.
+    pub ground_m: f64,
+    /// m.
+    pub gate_m: f64,
+    /// Where it stands.
+    pub phase: PhaseV1,
+}
+
+/// A phase of landing, as kept.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum PhaseV1 {
+    /// Until this tick.
+    Wait(i64),
+    /// Deorbit burn.
+    Burn,
+    /// Until this tick.
+    Approach(i64),
+    /// Braking burn.
+    Brake,
+    /// Descent.
+    Descend,
+}
+
+/// Turns parts of a World into their kept form; knows the bodies' keys.
+struct Keeper<'a>(&'a System);
+
+impl Keeper<'_> {
+    fn key(&self, body: BodyId) -> String {
+        self.0.body(body).key.clone()
+    }
+    fn state(&self, body: BodyId, s: &State<Centred>) -> StateV1 {
+        StateV1 { body: self.key(body), position_m: s.position.0.to_array(), velocity_m_s: s.velocity.0.to_array() }
+    }
+    fn rigid(&self, r: &Rigid) -> RigidV1 {
+        RigidV1 { state: self.state(r.body, &r.state), attitude: quat(r.icrf_from_hull.0), rate_rad_s: r.rate.0.to_array() }
+    }
+    fn resting(&self, r: &Resting) -> RestingV1 {
+        RestingV1 { body: self.key(r.body), position_m: r.position.0.to_array(), attitude: quat(r.fixed_from_hull.0) }
+    }
+    fn coast(&self, c: &Coast) -> MotionV1 {
+        let Wake { at, reason } = c.wake;
+        MotionV1::Coast {
+            epoch_ticks: c.arc.epoch.ticks,
+            state: self.state(c.arc.body, &c.arc.state),
+            attitude: match c.attitude {
+                CoastAttitude::Inertial { icrf_from_hull, rate } => {
+                    CoastAttitudeV1::Inertial { attitude: quat(icrf_from_hull), rate_rad_s: vec(rate) }
+                }
+                CoastAttitude::Held { hold, offset } => CoastAttitudeV1::Held { hold, offset: quat(offset) },
+            },
+            wake_ticks: at.ticks,
+            wake_reason: match reason {
+                Reason::Horizon => ReasonV1::Horizon,
+                Reason::Low => ReasonV1::Low,
+                Reason::Leave => ReasonV1::Leave,
+                Reason::Enter(body) => ReasonV1::Enter(self.key(body)),
+                Reason::Guidance => ReasonV1::Guidance,
+            },
+        }
+    }
+    fn motion(&self, motion: &Motion) -> MotionV1 {
+        match motion {
+            Motion::Coast(c) => self.coast(c),
+            Motion::Fly(r) => MotionV1::Fly(self.rigid(r)),
+            Motion::Contact(r) => MotionV1::Contact(self.rigid(r)),
+            Motion::Landed(r) => MotionV1::Landed(self.resting(r)),
+            Motion::Crashed(r) => MotionV1::Crashed(self.resting(r)),
+        }
+    }
+    fn landing(&self, l: &Landing) -> LandingV1 {
+        let Landing { body, spot, ground_m, gate_m, phase } = *l;
+        let phase = match phase {
+            Phase::Wait { burn } => PhaseV1::Wait(burn.ticks),
+            Phase::Burn => PhaseV1::Burn,
+            Phase::Approach { brake } => PhaseV1::Approach(brake.ticks),
+            Phase::Brake => PhaseV1::Brake,
+            Phase::Descend => PhaseV1::Descend,
+        };
+        LandingV1 { body: self.key(body), spot: vec(spot), ground_m, gate_m, phase }
+    }
+    fn ship(&self, ship: &Ship) -> ShipV1 {
+        // Taken apart by name, so that a field that the World gains cannot be forgotten here.
+        let Ship {
+            spec: _,
+            motion,
+            propellant_kg,
+            throttle,
+            nozzle,
+            gear_down,
+            hold,
+            held,
+            guidance,
+            landing,
+            effort: Effort { throttle: effort_throttle, rcs, felt_m_s2 },
+            last_contact,
+        } = ship;
+        ShipV1 {
+            motion: self.motion(motion),
+            propellant_kg: *propellant_kg,
+            throttle: *throttle,
+            nozzle: *nozzle,
+            gear_down: *gear_down,
+            hold: *hold,
+            held: held.map(quat),
+            guidance: *guidance,
+            landing: landing.as_ref().map(|l| self.landing(l)),
+            effort: [*effort_throttle, *rcs, *felt_m_s2],
+            last_contact: last_contact.map(|(speed, at)| (speed, at.ticks)),
+        }
+    }
+}
+
+impl From<&World> for SaveV1 {
+    fn from(world: &World) -> Self {
+        let World { system, time, quarters, warp, warp_asked, ship, target } = world;
+        let keeper = Keeper(system);
+        Self {
+            game_version: env!("CARGO_PKG_VERSION").to_owned(),
+            system: system.key.clone(),
+            system_hash: system.hash.clone(),
+            ship_key: ship.spec.key.clone(),
+            time_ticks: time.ticks,
+            quarters: *quarters,
+            warp: *warp,
+            warp_asked: *warp_asked,
+            target: target.map(|t| TargetV1 { body: keeper.key(t.body), spot_udeg: t.spot.map(|s| (s.lat_udeg, s.lon_udeg)) }),
+            ship: keeper.ship(ship),
+        }
+    }
+}
+
+fn quat(q: DQuat) -> [f64; 4] {
+    q.to_array()
+}
+fn vec(v: DVec3) -> [f64; 3] {
+    v.to_array()
+}
