@@ -1,10 +1,11 @@
 //! The session: the loop body that every mode calls. Live play, a headless run, a replay and a picture differ only in who
 //! makes the commands and where the picture goes.
 //!
-//! It holds what outlives a World: the quick slots, and the count of ticks. Not here: the clock on the wall (the window
+//! It holds what outlives a World: the quick slots, the record of the flight, and the count of ticks. Not here: the clock on the wall (the window
 //! counts ticks owed), files ([`crate::save`]), drawing ([`crate::view`]).
 
 use crate::command::{Action, Commands};
+use crate::replay::{Log, Recorder};
 use crate::world::World;
 use std::collections::VecDeque;
 
@@ -19,6 +20,7 @@ pub struct Session {
     /// Ticks of the session so far.
     pub ticks: u64,
     quick: VecDeque<World>,
+    recorder: Option<Recorder>,
 }
 
 /// What a tick did beyond advancing the World, for those who write files or show messages.
@@ -35,7 +37,17 @@ pub enum Event {
 impl Session {
     /// A session that begins with this World.
     pub fn new(world: World) -> Self {
-        Self { world, ticks: 0, quick: VecDeque::new() }
+        Self { world, ticks: 0, quick: VecDeque::new(), recorder: None }
+    }
+
+    /// Records the flight from now on.
+    pub fn record(&mut self) {
+        self.recorder = Some(Recorder::new(&self.world));
+    }
+
+    /// Ends the record and gives it back; `None` when nothing was recorded.
+    pub fn recorded(&mut self) -> Option<Log> {
+        self.recorder.take().map(|r| r.finish(&self.world))
     }
 
     /// One tick: quick slots first, then the World.
@@ -62,6 +74,9 @@ impl Session {
         }
         self.world.tick(commands);
         self.ticks += 1;
+        if let Some(recorder) = &mut self.recorder {
+            recorder.tick(commands, &self.world);
+        }
         events
     }
 }

@@ -230,3 +230,85 @@ fn short(hash: &str) -> String {
 fn payload_error(what: String) -> FormatError {
     FormatError::Payload { name: LOG.name, offset: 0, what }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::command::Commands;
+    use crate::replay::{Recorder, recorder};
+    use crate::save::fixture;
+
+    fn log() -> (Log, Header) {
+        let world = fixture::worlds().swap_remove(0);
+        let mut recorder = Recorder::new(&world);
+        for tick in 0..150 {
+            let actions = if tick == 7 { vec![Action::Quicksave, Action::Warp(3)] } else { vec![] };
+            recorder.tick(&Commands { axes: Axes { roll: tick / 20, ..Axes::default() }, actions }, &world);
+        }
+        (recorder.finish(&world), recorder::header(&world))
+    }
+
+    fn said_of(change: impl Fn(&mut Log)) -> String {
+        let (mut log, header) = log();
+        change(&mut log);
+        Log::from_bytes(&log.to_bytes(&header).unwrap()).unwrap().unwrap_err().join("; ")
+    }
+
+    macro_rules! refuses {
+        ($($name:ident: $change:expr => $word:literal;)*) => {$(
+            #[test]
+            fn $name() {
+                let said = said_of($change);
+                assert!(said.contains($word), "{said}");
+            }
+        )*};
+    }
+    refuses! {
+        refuses_runs_that_do_not_add_up: |l: &mut Log| l.runs[0].ticks += 1 => "runs: together Some(151) ticks, expected 150";
+        refuses_runs_that_overflow: |l: &mut Log| l.runs[0].ticks = u64::MAX => "runs: together None";
+        refuses_an_endless_flight: |l: &mut Log| l.ticks = u64::MAX => "ticks: 18446744073709551615";
+        refuses_actions_after_the_end: |l: &mut Log| l.actions[1].0 = 150 => "actions[1]: tick 150";
+        refuses_actions_out_of_order: |l: &mut Log| l.actions[1].0 = 3 => "actions[1]: tick 3, expected 7";
+        refuses_a_check_without_hashes: |l: &mut Log| l.checks[0].hashes.clear() => "checks[0]: tick 60 with 0 hashes";
+        refuses_an_end_without_a_check: |l: &mut Log| drop(l.checks.pop()) => "none at the last tick";
+        refuses_fields_without_a_name: |l: &mut Log| l.names.clear() => "rows[0]";
+    }
+
+    #[test]
+    fn other_assets_are_named() {
+        let (mut log, _) = log();
+        let world = fixture::worlds().swap_remove(0);
+        assert!(log.check_assets(Path::new("a.syzlog"), &world).is_ok());
+        log.ship_hash = "0".repeat(64);
+        let said = log.check_assets(Path::new("a.syzlog"), &world).unwrap_err().to_string();
+        assert!(said.contains("a.syzlog") && said.contains("ship `torch`") && said.contains("000000000000"), "{said}");
+    }
+
+    #[test]
+    fn bent_payloads_never_panic() {
+        let (log, header) = log();
+        let payload = postcard::to_stdvec(&log).unwrap();
+        let mut x = 88_172_645_463_325_252_u64;
+        let mut next = move || {
+            x ^= x << 13;
+            x ^= x >> 7;
+            x ^= x << 17;
+            usize::try_from(x >> 33).unwrap()
+        };
+        let mut refused = 0;
+        for _ in 0..1500 {
+            let mut bent = payload.clone();
+            for _ in 0..1 + next() % 3 {
+                let at = next() % bent.len();
+                match next() % 3 {
+                    0 => bent[at] ^= 1 << (next() % 8),
+                    1 => bent[at] = 0xff,
+                    _ => bent.truncate(at.max(1)),
+                }
+            }
+            let bytes = format::wrap(LOG, &header, &bent).unwrap();
+            refused += usize::from(Log::from_bytes(&bytes).unwrap().is_err());
+        }
+        assert!(refused > 300, "{refused}");
+    }
+}

@@ -145,3 +145,92 @@ fn difference(log: &Log, row: &Row, world: &World, first: &str) -> Option<FieldD
     let best = all.iter().position(|d| d.name.0 == first).unwrap_or(0);
     all.into_iter().nth(best)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::command::{Action, Hold};
+    use crate::replay::Recorder;
+    use crate::save::{self, fixture};
+    use crate::session::Session;
+
+    /// A flight of 500 ticks with sticks, actions, a quick save and a quick load.
+    fn flown() -> Log {
+        let mut session = Session::new(fixture::worlds().swap_remove(1));
+        session.record();
+        for tick in 0..500_u64 {
+            let pitch = if (100..130).contains(&tick) { 12_000 } else { 0 };
+            let actions = match tick {
+                5 => vec![Action::Throttle(50_000), Action::Hold(Hold::Prograde)],
+                150 => vec![Action::Quicksave],
+                300 => vec![Action::Quickload],
+                _ => vec![],
+            };
+            session.tick(&Commands { axes: Axes { pitch, ..Axes::default() }, actions });
+        }
+        session.recorded().unwrap()
+    }
+
+    fn play(log: Log, bend: impl Fn(u64, &mut Session)) -> Option<Divergence> {
+        let world = fixture::worlds().swap_remove(1);
+        let start = save::decode(&log.start).unwrap().restore(&world.system, &world.ship.spec).unwrap();
+        let mut session = Session::new(start);
+        let mut player = Player::new(log);
+        while let Some(commands) = player.next_commands() {
+            session.tick(&commands);
+            bend(player.tick(), &mut session);
+            if let Some(d) = player.compare(&session.world) {
+                return Some(d);
+            }
+        }
+        None
+    }
+
+    #[test]
+    fn a_flight_replays_bit_for_bit_and_through_its_file() {
+        let log = flown();
+        assert_eq!((log.ticks, log.actions.len(), log.runs.len(), log.checks.len()), (500, 4, 3, 9));
+        let bytes = log.to_bytes(&crate::replay::recorder::header(&fixture::worlds()[1])).unwrap();
+        let back = Log::from_bytes(&bytes).unwrap().unwrap();
+        assert_eq!(back, log);
+        assert_eq!(play(back, |_, _| {}), None);
+    }
+
+    #[test]
+    fn saving_and_loading_at_every_third_tick_changes_no_bit() {
+        let heavy = |tick: u64, session: &mut Session| {
+            if tick.is_multiple_of(3) {
+                session.world = save::round_trip(&session.world).unwrap();
+            }
+        };
+        assert_eq!(play(flown(), heavy), None);
+    }
+
+    #[test]
+    fn one_changed_bit_is_named_with_tick_subsystem_field_and_both_patterns() {
+        let bend = |tick: u64, session: &mut Session| {
+            if tick == 130 {
+                session.world.ship.propellant_kg = f64::from_bits(session.world.ship.propellant_kg.to_bits() ^ 1);
+            }
+        };
+        let d = play(flown(), bend).unwrap();
+        let field = d.field.clone().unwrap();
+        assert_eq!(d.tick, 180);
+        assert!(field.recorded.is_some() && field.recorded != field.now);
+        let text = d.to_string();
+        assert!(text.contains("tick 180") && text.contains(&format!("{:#018x}", field.recorded.unwrap())), "{text}");
+    }
+
+    #[test]
+    fn a_longer_flight_keeps_few_rows_and_all_hashes() {
+        let world = fixture::worlds().swap_remove(4);
+        let mut recorder = Recorder::new(&world);
+        for _ in 0..60 * 400 {
+            recorder.tick(&Commands::default(), &world);
+        }
+        let log = recorder.finish(&world);
+        assert_eq!((log.checks.len(), log.runs.len()), (400, 1));
+        assert!((30..=66).contains(&log.rows.len()), "{}", log.rows.len());
+        assert_eq!(log.rows.last().unwrap().tick, log.ticks);
+    }
+}

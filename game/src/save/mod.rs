@@ -8,6 +8,8 @@
 //! A save is also the scenario format: a start may name one, and a replay log begins with one.
 
 pub mod file;
+#[cfg(test)]
+pub(crate) mod fixture;
 pub mod format;
 pub mod restore;
 pub mod slots;
@@ -111,5 +113,135 @@ impl SaveError {
     /// True when the file was written by a newer program.
     pub fn is_newer(&self) -> bool {
         matches!(self, Self::Format { source, .. } if source.is_newer())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::command::{Action, Axes, Commands, Hold};
+    use crate::world::ship::Motion;
+    use v1::MotionV1;
+
+    #[test]
+    fn every_bit_comes_back_in_every_kind_of_motion() {
+        for world in fixture::worlds() {
+            let back = round_trip(&world).unwrap();
+            assert_eq!(back.fields(), world.fields());
+            assert_eq!(SaveV1::from(&back), SaveV1::from(&world));
+        }
+        assert!(fixture::worlds().iter().any(|w| matches!(w.ship.motion, Motion::Coast(_))), "the fixture coasts in one");
+    }
+
+    #[test]
+    fn after_loading_the_same_ticks_give_the_same_bits() {
+        for world in fixture::worlds() {
+            let (mut kept, mut loaded) = (world.clone(), round_trip(&world).unwrap());
+            for tick in 0..200_u64 {
+                let axes = Axes { pitch: if tick > 60 { 9_000 } else { 0 }, ..Axes::default() };
+                let actions = match tick {
+                    20 => vec![Action::Throttle(30_000)],
+                    150 => vec![Action::Hold(Hold::Prograde)],
+                    _ => vec![],
+                };
+                let commands = Commands { axes, actions };
+                kept.tick(&commands);
+                loaded.tick(&commands);
+            }
+            assert_eq!(loaded.fields(), kept.fields());
+            assert_ne!(kept.fields(), world.fields(), "the ticks did something");
+        }
+    }
+
+    /// Changes one thing of a sound save and gives back what is said about it.
+    fn said_of(change: impl Fn(&mut SaveV1)) -> String {
+        let world = &fixture::worlds()[2];
+        let mut save = SaveV1::from(world);
+        change(&mut save);
+        let bytes = rmp_serde::to_vec_named(&save).unwrap();
+        decode(&bytes).unwrap().restore(&world.system, &world.ship.spec).map(drop).unwrap_err().join("; ")
+    }
+
+    fn state_of(save: &mut SaveV1) -> &mut v1::RigidV1 {
+        match &mut save.ship.motion {
+            MotionV1::Fly(r) => r,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    macro_rules! refuses {
+        ($($name:ident: $change:expr => $($word:literal),+;)*) => {$(
+            #[test]
+            fn $name() {
+                let said = said_of($change);
+                $(assert!(said.contains($word), "{said}");)+
+            }
+        )*};
+    }
+    refuses! {
+        refuses_a_position_that_is_nan: |s: &mut SaveV1| state_of(s).state.position_m[1] = f64::NAN => "ship.motion.Fly.state.position_m.y: NaN";
+        refuses_an_infinite_velocity: |s: &mut SaveV1| state_of(s).state.velocity_m_s[0] = f64::INFINITY => "velocity_m_s.x: inf";
+        refuses_faster_than_light: |s: &mut SaveV1| state_of(s).state.velocity_m_s[2] = 4e8 => "velocity_m_s.z: 400000000";
+        refuses_the_centre_of_a_body: |s: &mut SaveV1| state_of(s).state.position_m = [0.0; 3] => "at the body's centre";
+        refuses_an_attitude_that_is_no_rotation: |s: &mut SaveV1| state_of(s).attitude = [0.0; 4] => "attitude: length 0", "unit quaternion";
+        refuses_an_absurd_turn: |s: &mut SaveV1| state_of(s).rate_rad_s[0] = 1e9 => "rate_rad_s.x";
+        refuses_negative_propellant: |s: &mut SaveV1| s.ship.propellant_kg = -1.0 => "ship.propellant_kg: -1, expected 0 to";
+        refuses_more_than_the_tanks_hold: |s: &mut SaveV1| s.ship.propellant_kg = 1e12 => "ship.propellant_kg";
+        refuses_an_unknown_warp: |s: &mut SaveV1| s.warp_asked = 200 => "warp_asked: 200, expected 0 to 10";
+        refuses_a_date_beyond_belief: |s: &mut SaveV1| s.time_ticks = i64::MAX => "time_ticks: 9223372036854775807";
+        refuses_a_body_that_is_not_there: |s: &mut SaveV1| state_of(s).state.body = "rok".into() => "has no body `rok`", "did you mean `rock`?";
+        refuses_another_system: |s: &mut SaveV1| s.system = "three".into() => "saved in `three`";
+        refuses_another_ship: |s: &mut SaveV1| s.ship_key = "arrow".into() => "ship_key: it was saved with `arrow`";
+        refuses_a_spot_off_the_map: |s: &mut SaveV1| s.target.as_mut().unwrap().spot_udeg = Some((91_000_000, 0)) => "target.spot_udeg.0";
+        refuses_a_landing_spot_that_is_no_direction: |s: &mut SaveV1| s.ship.landing.as_mut().unwrap().spot = [0.0; 3] => "ship.landing.spot";
+        names_all_faults_at_once: |s: &mut SaveV1| {
+            s.ship.nozzle = f64::NAN;
+            s.quarters = 9;
+        } => "ship.nozzle: NaN", "quarters: 9, expected 0 to 3";
+    }
+
+    #[test]
+    fn a_payload_that_is_something_else_is_told_so() {
+        for bad in [&b""[..], b"\x00", b"hello", &[0xdd, 0xff, 0xff, 0xff, 0xff], &[0x93; 5000]] {
+            assert!(decode(bad).unwrap_err()[0].contains("not a state of format 1"));
+        }
+    }
+
+    #[test]
+    fn bent_payloads_never_panic() {
+        let worlds = fixture::worlds();
+        let mut x = 0x9e37_79b9_7f4a_7c15_u64;
+        let mut next = move || {
+            x ^= x << 13;
+            x ^= x >> 7;
+            x ^= x << 17;
+            usize::try_from(x >> 33).unwrap()
+        };
+        let (mut taken, mut refused) = (0, 0);
+        for round in 0..1500 {
+            let world = &worlds[round % worlds.len()];
+            let mut bytes = encode(world);
+            for _ in 0..1 + next() % 4 {
+                let at = next() % bytes.len();
+                match next() % 4 {
+                    0 => bytes[at] ^= 1 << (next() % 8),
+                    1 => bytes[at] = [0x00, 0x7f, 0xc0, 0xca, 0xcb, 0xdd, 0xdf, 0xff][next() % 8],
+                    2 => bytes.truncate(at.max(1)),
+                    _ => drop(bytes.splice(at..at, [0xdf, 0xff, 0xff])),
+                }
+            }
+            match decode(&bytes).and_then(|save| save.restore(&world.system, &world.ship.spec)) {
+                Ok(mut world) => {
+                    world.tick(&Commands::default());
+                    assert!(world.fields().len() > 20);
+                    taken += 1;
+                }
+                Err(problems) => {
+                    assert!(!problems.is_empty());
+                    refused += 1;
+                }
+            }
+        }
+        assert!(taken > 20 && refused > 500, "the changes reach deep: {taken} taken, {refused} refused");
     }
 }

@@ -1,0 +1,85 @@
+//! A small World for the tests of saves and replays: a star and one bare body, a ship in each kind of motion.
+
+use crate::command::{Guidance, Hold, Spot, Target};
+use crate::world::World;
+use crate::world::ship::guidance::{Landing, Phase};
+use crate::world::ship::spec::tests::torch;
+use crate::world::ship::{Effort, Motion, Resting, Rigid, Ship};
+use crate::world::system::{Body, System};
+use engine::orbit::{BodyId, State};
+use engine::space::{Position, Rotation, Vector, Velocity};
+use engine::terrain::Relief;
+use engine::time::SimTime;
+use engine::units::KM;
+use glam::{DQuat, DVec3, Vec3};
+use std::sync::Arc;
+
+fn body(key: &str, parent: Option<BodyId>, gm_m3_s2: f64, radius_m: f64) -> Body {
+    Body {
+        key: key.into(),
+        name: key.into(),
+        parent,
+        gm_m3_s2,
+        radius_m,
+        soi_radius_m: if parent.is_some() { 9.0e8 } else { f64::INFINITY },
+        spin: engine::orbit::rotation::Spin { pole_dec_rad: [1.4, 0.0], meridian_rad: [0.3, 6.3], ..Default::default() },
+        albedo: Vec3::splat(0.3),
+        intensity_cd: Vec3::ZERO,
+        air: None,
+        relief: parent.map(|_| Arc::new(Relief { radius_m, ..Relief::default() })),
+        relief_max: 1.0,
+    }
+}
+
+/// A star and `rock`, of the Earth's mass and size but bare.
+pub(crate) fn system() -> Arc<System> {
+    let bodies = vec![body("star", None, 1.327e20, 7.0e8), body("rock", Some(BodyId(0)), 3.986e14, 6371.0 * KM)];
+    Arc::new(System { key: "two".into(), name: "Two".into(), bodies, ephemeris: Default::default(), hash: "ab".repeat(32) })
+}
+
+/// About the rock, 400 km up, turning a little.
+pub(crate) fn rigid() -> Rigid {
+    Rigid {
+        body: BodyId(1),
+        state: State { position: Position::xyz(6771.0 * KM, 1.0 / 3.0, -7.0), velocity: Velocity::xyz(0.1, 7672.6, 3.0) },
+        icrf_from_hull: Rotation::new(DQuat::from_xyzw(0.1, -0.7, 0.2, 0.6).normalize()),
+        rate: Vector::xyz(1e-3, 2e-3, -0.5e-3),
+    }
+}
+
+/// On the rock.
+pub(crate) fn resting() -> Resting {
+    let position = Position::xyz(0.0, 6371.0 * KM + 3.0, 1.0 / 7.0);
+    Resting { body: BodyId(1), position, fixed_from_hull: Rotation::new(DQuat::from_xyzw(0.3, 0.1, -0.5, 0.8).normalize()) }
+}
+
+/// A World with a ship that moves so.
+pub(crate) fn world(motion: Motion) -> World {
+    World::new(system(), SimTime::from_ticks(50_399_999_999), Ship::new(Arc::new(torch()), motion))
+}
+
+/// One World for each kind of motion, with every optional part of the state filled in one or the other.
+pub(crate) fn worlds() -> Vec<World> {
+    let mut flying = world(Motion::Fly(rigid()));
+    flying.ship.motion = Motion::Fly(rigid());
+    flying.ship.throttle = 40_000;
+    flying.ship.nozzle = 1.0 / 3.0;
+    flying.ship.propellant_kg *= 0.1 + 0.2;
+    flying.ship.held = Some(DQuat::from_xyzw(0.5, 0.5, -0.5, 0.5));
+    flying.ship.effort = Effort { throttle: 0.61, rcs: 0.1, felt_m_s2: 9.1 };
+    flying.ship.last_contact = Some((0.7, SimTime::from_ticks(50_000_000_000)));
+    flying.target = Some(Target { body: BodyId(1), spot: Some(Spot { lat_udeg: -33_000_000, lon_udeg: 151_200_000 }) });
+    let mut landing = flying.clone();
+    landing.ship.guidance = Guidance::Land;
+    landing.ship.landing = Some(Landing {
+        body: BodyId(1),
+        spot: DVec3::new(0.6, 0.0, 0.8),
+        ground_m: 12.5,
+        gate_m: 8_000.0,
+        phase: Phase::Approach { brake: SimTime::from_ticks(50_400_100_000) },
+    });
+    let mut coasting = world(Motion::Fly(Rigid { rate: Vector::ZERO, ..rigid() }));
+    coasting.ship.hold = Hold::Free;
+    coasting.warp_asked = 5;
+    vec![coasting, flying, landing, world(Motion::Contact(rigid())), world(Motion::Landed(resting())), world(Motion::Crashed(resting()))]
+}
