@@ -179,6 +179,7 @@ impl Checker<'_> {
             PhaseV1::Approach(at) => Phase::Approach { brake: self.ticks("ship.landing.phase.Approach", at) },
             PhaseV1::Brake => Phase::Brake,
             PhaseV1::Descend => Phase::Descend,
+            PhaseV1::Touchdown => Phase::Touchdown,
         };
         let ground_m = self.within("ship.landing.ground_m", l.ground_m, -1e6, 1e6);
         let gate_m = self.within("ship.landing.gate_m", l.gate_m, -1e6, 1e7);

@@ -208,6 +208,8 @@ pub enum PhaseV1 {
     Brake,
     /// Descent.
     Descend,
+    /// Coming to rest.
+    Touchdown,
 }
 
 /// Turns parts of a World into their kept form; knows the bodies' keys.
@@ -264,6 +266,7 @@ impl Keeper<'_> {
             Phase::Approach { brake } => PhaseV1::Approach(brake.ticks),
             Phase::Brake => PhaseV1::Brake,
             Phase::Descend => PhaseV1::Descend,
+            Phase::Touchdown => PhaseV1::Touchdown,
         };
         LandingV1 { body: self.key(body), spot: vec(spot), ground_m, gate_m, phase }
     }
