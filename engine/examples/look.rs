@@ -110,6 +110,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let stars = concat!(env!("CARGO_MANIFEST_DIR"), "/../assets/stars/stars.bin");
     renderer.set_stars(&gpu, StarCatalogue::parse(&std::fs::read(stars)?)?);
     println!("{} · passes compiled in {:.2} s", gpu.info.name, started.elapsed().as_secs_f64());
+    let mut pictures = Vec::new();
     let image = OffscreenImage::new(&gpu, size);
     for (name, scene) in scenes(size).into_iter().filter(|(n, _)| only.is_none_or(|o| o == n)) {
         let started = std::time::Instant::now();
@@ -120,10 +121,25 @@ fn main() -> Result<(), Box<dyn Error>> {
         for p in &report.passes {
             println!("    {:12} {:5} {:>8} {}", p.name, p.ran, p.gpu_ms.map_or(String::new(), |ms| format!("{ms:.2} ms")), p.reason);
         }
-        let mut encoder = png::Encoder::new(std::io::BufWriter::new(File::create(dir.join(format!("{name}.png")))?), size[0], size[1]);
-        encoder.set_color(png::ColorType::Rgba);
-        encoder.set_depth(png::BitDepth::Eight);
-        encoder.write_header()?.write_image_data(&pixels)?;
+        write_png(&dir.join(format!("{name}.png")), size, &pixels)?;
+        pictures.push(pixels);
     }
+    // All of them on one sheet, two to a row.
+    let [w, h] = size.map(|n| n as usize);
+    let sheet: Vec<u8> = pictures
+        .chunks(2)
+        .flat_map(|pair| {
+            (0..h).flat_map(move |y| (0..2).flat_map(move |i| pair[i.min(pair.len() - 1)][4 * w * y..][..4 * w].iter().copied()))
+        })
+        .collect();
+    let rows = u32::try_from(pictures.len().div_ceil(2))?;
+    write_png(&dir.join("sheet.png"), [size[0] * 2, size[1] * rows], &sheet)
+}
+
+fn write_png(path: &std::path::Path, size: [u32; 2], rgba: &[u8]) -> Result<(), Box<dyn Error>> {
+    let mut encoder = png::Encoder::new(std::io::BufWriter::new(File::create(path)?), size[0], size[1]);
+    encoder.set_color(png::ColorType::Rgba);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.write_header()?.write_image_data(rgba)?;
     Ok(())
 }

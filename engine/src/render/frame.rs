@@ -82,6 +82,11 @@ fn light(f: &mut FrameContext<'_>, passes: &mut Passes) -> Result<wgpu::TextureV
         passes.smooth_body.record(f, &light);
     }
 
+    let skip = passes.ships.skip(f.scene);
+    if f.runs("ships", skip) {
+        passes.ships.record(f, &mut passes.ship_geometry, &light);
+    }
+
     let skip = passes.sun_disc.skip(f.scene);
     if f.runs("sun_disc", skip) {
         passes.sun_disc.record(f);

@@ -4,7 +4,7 @@
 //! and explicit padding; `tests/tests/shaders.rs` compares every one, field by field, with naga's reflection of the WGSL.
 //! A struct here has the name and the field names of its WGSL twin plus `Uniform`. Fields are explained there.
 
-use super::{Body, Camera, Snapshot, Surface};
+use super::{Body, Camera, Ship, Snapshot, Surface};
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
@@ -170,6 +170,33 @@ impl MeterUniform {
             range: [LOG2_MIN, per_stop, compensation_ev, 0.0],
             trim: [METER_RANGE[0], METER_RANGE[1], ADAPT_PER_S[0], ADAPT_PER_S[1]],
             limit: [EV100_DARK, 20.0, 0.0, 0.0],
+        }
+    }
+}
+
+/// A ship as a vertex-buffer instance (`Ship` of `shaders/lib/ship.wgsl`, locations 3 … 7).
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[allow(missing_docs)]
+pub struct ShipInstance {
+    pub centre: [f32; 4],
+    pub hull_x: [f32; 4],
+    pub hull_y: [f32; 4],
+    pub hull_z: [f32; 4],
+    pub state: [f32; 4],
+}
+
+impl ShipInstance {
+    /// From the snapshot.
+    pub fn new(ship: &Ship) -> Self {
+        let axis = |v: Vec3, w: f32| vec4(ship.icrf_from_hull * v, w);
+        let host = ship.host.filter(|h| *h < MAX_BODIES).map_or(-1.0, |h| h as f32);
+        Self {
+            centre: vec4(ship.centre_m, host),
+            hull_x: axis(Vec3::X, 0.0),
+            hull_y: axis(Vec3::Y, 0.0),
+            hull_z: axis(Vec3::Z, 0.0),
+            state: [ship.throttle.clamp(0.0, 1.0), ship.gear.clamp(0.0, 1.0), ship.heat.clamp(0.0, 1.0), ship.height_above_ground_m],
         }
     }
 }

@@ -4,6 +4,8 @@
 
 pub mod bloom;
 pub mod exposure;
+pub mod ship_mesh;
+pub mod ships;
 pub mod smooth_body;
 pub mod stars;
 pub mod sun_disc;
@@ -23,6 +25,10 @@ pub struct Passes {
     pub no_shadow: ShadowMap,
     /// Spheres without terrain.
     pub smooth_body: smooth_body::SmoothBody,
+    /// Hulls and flames.
+    pub ships: ships::Ships,
+    /// Where this frame's ships are.
+    pub ship_geometry: ships::ShipGeometry,
     /// Points of light.
     pub stars: stars::Stars,
     /// The star's disc.
@@ -42,6 +48,8 @@ impl Passes {
             vacuum: AirTables::vacuum(gpu),
             no_shadow: ShadowMap::none(gpu),
             smooth_body: smooth_body::SmoothBody::new(gpu, shaders, shared, maps)?,
+            ships: ships::Ships::new(gpu, shaders, shared)?,
+            ship_geometry: ships::ShipGeometry::new(gpu),
             stars: stars::Stars::new(gpu, shaders, shared)?,
             sun_disc: sun_disc::SunDisc::new(gpu, shaders, shared)?,
             bloom: bloom::Bloom::new(gpu, shaders, shared)?,

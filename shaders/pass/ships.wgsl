@@ -1,0 +1,113 @@
+// Ships: the hull. Rust side: engine/src/render/pass/ships.rs.
+
+#include "lib/frame.wgsl"
+#include "lib/hull.wgsl"
+#include "lib/ship.wgsl"
+#include "lib/lambert.wgsl"
+#include "lib/shadow.wgsl"
+
+@group(0) @binding(0) var<uniform> frame: Frame;
+@group(0) @binding(1) var<uniform> bodies: Bodies;
+@group(0) @binding(2) var<uniform> exposure: Exposure;
+@group(1) @binding(5) var shadow_map: texture_depth_2d;
+@group(1) @binding(6) var shadow_compare: sampler_comparison;
+@group(1) @binding(7) var<uniform> shadow: Shadow;
+
+struct Varying {
+    @builtin(position) position: vec4<f32>,
+    @location(0) point: vec3<f32>,
+    @location(1) normal: vec3<f32>,
+    @location(2) hull: vec3<f32>,
+    @location(3) hull_normal: vec3<f32>,
+    @location(4) @interpolate(flat) material: u32,
+    @location(5) @interpolate(flat) host: i32,
+    @location(6) @interpolate(flat) state: vec4<f32>,
+}
+
+@vertex
+fn vertex(
+    @location(0) position: vec4<f32>,
+    @location(1) normal: vec4<f32>,
+    @location(2) retract: vec4<f32>,
+    ship: Ship,
+) -> Varying {
+    var out: Varying;
+    out.point = hull_point(ship, position.xyz, retract.xyz);
+    out.position = frame.clip_from_icrf * vec4<f32>(out.point, 1.0);
+    out.normal = icrf_from_hull(ship, normal.xyz);
+    out.hull = position.xyz;
+    out.hull_normal = normal.xyz;
+    out.material = u32(position.w);
+    out.host = i32(ship.centre.w);
+    out.state = ship.state;
+    return out;
+}
+
+@fragment
+fn fragment(in: Varying) -> @location(0) vec4<f32> {
+    let n = normalize(in.normal);
+    let v = -normalize(in.point);
+    let throttle = in.state.x;
+    var m = hull_material(in.material);
+
+    // The belly of the ceramic body wears the heat shield; joints and a stripe are painted on.
+    let pixel = length(in.point) * frame.up.w;
+    if in.material == 0u {
+        let belly = smoothstep(-0.25, -0.45, in.hull_normal.y - 0.12 * smoothstep(-3.0, -6.5, in.hull.z));
+        let shield = hull_material(1u);
+        m.albedo = mix(m.albedo, shield.albedo, belly);
+        m.roughness = mix(m.roughness, shield.roughness, belly);
+        let stripe = smoothstep(0.02, 0.0, abs(in.hull.y - 0.30) - 0.07) * step(-6.6, in.hull.z) * step(in.hull.z, 4.6) * step(abs(in.hull_normal.z), 0.6);
+        m.albedo = mix(m.albedo, hull_material(6u).albedo, stripe * step(0.8, abs(in.hull.x)) * (1.0 - belly));
+    }
+    if in.material <= 1u {
+        m.albedo *= panel_joints(in.hull, pixel);
+    }
+
+    // The star, and the share of its disc that is free here.
+    let to_star = frame.star.xyz - in.point;
+    let star_distance = length(to_star);
+    let l = to_star / star_distance;
+    let sigma = frame.star.w / star_distance;
+    var sun = frame.intensity.rgb / star_distance / star_distance;
+    var ambient = vec3<f32>(1e-3);
+    var mirrored = vec3<f32>(0.0);
+    let reflected = reflect(-v, n);
+    if in.host >= 0 {
+        let body = bodies.list[in.host];
+        let up = -normalize(body.centre.xyz - in.point);
+        let sine = min(body.centre.w / length(body.centre.xyz - in.point), 0.99999);
+        // Height of the star above the host's limb, in units of its disc.
+        let dip = asin(sine) - 1.5707963;
+        let elevation = asin(clamp(dot(l, up), -1.0, 1.0)) - dip;
+        sun *= smoothstep(-sigma, sigma, elevation);
+        // The lit ground below: Lambert, seen under the sun's height at the point beneath the ship.
+        let ground = body.albedo.rgb / PI * body.illuminance.rgb * sun_cosine(dot(up, body.sun.xyz), 0.15);
+        ambient += PI * ground * sphere_form_factor(sine, dot(n, -up));
+        let horizon = cos(asin(sine));
+        let facing = dot(reflected, -up) - horizon;
+        mirrored += ground * smoothstep(-0.5 * m.roughness - 0.02, 0.5 * m.roughness + 0.02, facing);
+    }
+    sun *= ship_shadow(shadow, shadow_map, shadow_compare, in.point + n * 0.05, sigma);
+
+    var luminance = sun * ggx_reflect(m, n, v, l, sigma);
+    luminance += ambient / PI * m.albedo * (1.0 - m.metallic);
+    let f0 = mix(vec3<f32>(0.04), m.albedo, m.metallic);
+    let fresnel = f0 + (max(vec3<f32>(1.0 - m.roughness), f0) - f0) * pow(1.0 - max(dot(n, v), 0.0), 5.0);
+    luminance += mirrored * fresnel;
+
+    // What shines by itself: lamps, bells under power, the hull at entry.
+    luminance += m.albedo * m.lamp;
+    if in.material == 5u {
+        let inside = smoothstep(0.0, -1.0, in.hull_normal.z * 0.2 + dot(in.hull_normal.xy, in.hull.xy) * 0.2);
+        luminance += heat_glow(throttle * (0.35 + 0.4 * inside));
+    }
+    let windward = clamp(0.35 - in.hull_normal.y * 0.55 - in.hull_normal.z * 0.6, 0.0, 1.0);
+    luminance += heat_glow(in.state.z * windward);
+    // The flame lights what looks aft.
+    let aft = vec3<f32>(0.0, 0.0, 8.5) - in.hull;
+    let flame = max(dot(in.hull_normal, normalize(aft)), 0.0) / (1.0 + dot(aft, aft) * 0.25);
+    luminance += m.albedo * vec3<f32>(0.55, 0.75, 1.0) * 1.5e4 * flame * throttle;
+
+    return vec4<f32>(to_hdr(luminance, exposure.pre), 1.0);
+}
