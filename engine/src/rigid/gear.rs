@@ -119,10 +119,11 @@ fn one(leg: &Leg, m: &mut LegState, state: &BodyState, patch: &Patch, mass_kg: f
     let compression = length - hit.distance_m;
     // A leg that leans on the ground at a grazing angle must not be amplified without bound.
     let rate = -v_normal / (-axis.dot(n)).max(0.3);
-    let stop = (compression - leg.stroke_m).max(0.0);
+    // The stop is bounded: legs that were let out into the ground lift the ship, they do not fling it.
+    let stop = (compression - leg.stroke_m).clamp(0.0, 0.5 * leg.stroke_m);
     // Explicit dampers are stable for c·h below the mass they move; a foot off-centre moves about a quarter of it.
     let damping = leg.damping_n_s_m.min(0.2 * mass_kg / dt_s);
-    let normal_n = (leg.stiffness_n_m * (compression + 4.0 * stop) + damping * rate).max(0.0);
+    let normal_n = (leg.stiffness_n_m * (compression.min(1.5 * leg.stroke_m) + 4.0 * stop) + damping * rate).max(0.0);
 
     if m.hold_m.is_none() {
         let touch = (-v_normal, slide.length());

@@ -119,6 +119,9 @@ impl World {
         f.real("ship", "effort.felt_m_s2", ship.effort.felt_m_s2);
         f.real("contact", "last_contact.speed", ship.last_contact.map_or(-1.0, |c| c.0));
         f.int("contact", "last_contact.time", ship.last_contact.map_or(0, |c| c.1.ticks));
+        for (name, bits) in ship.ground.fields() {
+            f.bits("contact", name, bits);
+        }
         let (kind, value) = match ship.guidance {
             Guidance::Manual => (0, 0),
             Guidance::Hover => (1, 0),

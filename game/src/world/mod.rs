@@ -19,6 +19,7 @@ use engine::space::{Position, Rotation, Vector, Velocity};
 use engine::time::SimTime;
 use glam::DVec3;
 use ship::attitude::{self, offset_of_body};
+use ship::contact;
 use ship::local::Local;
 use ship::warp::{self, Reason, Wake};
 use ship::{Coast, CoastAttitude, Motion, Resting, Rigid, Ship, flight};
@@ -88,6 +89,8 @@ impl World {
                     ship.throttle = 0;
                 }
             }
+            // Weight on the gear (or on the belly) locks it.
+            Action::Gear(_) if contact::stands(ship) => {}
             Action::Gear(down) => ship.gear_down = down,
             Action::Warp(level) => self.warp_asked = level.min(WARP_QUARTERS.len() as u8 - 1),
             Action::Target(target) => {
@@ -168,7 +171,10 @@ impl World {
         let local = Local::new(&self.system, self.time, rigid.body, &rigid.state);
         let stepped = flight::step(&mut self.ship, &local, &rigid, axes, self.target);
         self.time = self.time.plus(1);
-        self.ship.motion = Motion::Fly(stepped.free);
+        self.ship.motion = contact::settle(&mut self.ship, &local, &rigid, &stepped, axes, self.time);
+        if !matches!(self.ship.motion, Motion::Fly(_)) {
+            return;
+        }
         if self.time.ticks % SPHERE_CHECK_TICKS == 0 {
             self.change_sphere();
         }

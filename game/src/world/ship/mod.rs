@@ -5,9 +5,11 @@
 
 pub mod aero;
 pub mod attitude;
+pub mod contact;
 pub mod flight;
 pub mod guidance;
 pub mod local;
+pub mod recorder;
 pub mod spec;
 pub mod thrust;
 pub mod warp;
@@ -50,6 +52,8 @@ pub struct Ship {
     pub effort: Effort,
     /// Speed of the last touchdown or impact along the ground's normal, m/s, and when.
     pub last_contact: Option<(f64, SimTime)>,
+    /// What it keeps about the ground near it.
+    pub ground: contact::Ground,
 }
 
 /// What the engines did in a physical tick, for readout and sound.
@@ -148,6 +152,7 @@ impl Ship {
             landing: None,
             effort: Effort::default(),
             last_contact: None,
+            ground: contact::Ground::default(),
         }
     }
     /// Mass now, kg.
