@@ -7,6 +7,7 @@ use crate::world::ship::spec::tests::torch;
 use crate::world::ship::{Effort, Motion, Resting, Rigid, Ship};
 use crate::world::system::{Body, System};
 use engine::orbit::{BodyId, State};
+use engine::rigid::{Contact, LegState, PatchKey};
 use engine::space::{Position, Rotation, Vector, Velocity};
 use engine::terrain::Relief;
 use engine::time::SimTime;
@@ -81,5 +82,12 @@ pub(crate) fn worlds() -> Vec<World> {
     let mut coasting = world(Motion::Fly(Rigid { rate: Vector::ZERO, ..rigid() }));
     coasting.ship.hold = Hold::Free;
     coasting.warp_asked = 5;
-    vec![coasting, flying, landing, world(Motion::Contact(rigid())), world(Motion::Landed(resting())), world(Motion::Crashed(resting()))]
+    let mut touching = world(Motion::Contact(rigid()));
+    touching.ship.ground.contact = Contact {
+        key: Some(PatchKey { face: 4, middle: [-812, 2_000_000] }),
+        legs: vec![LegState { hold_m: Some(DVec3::new(6371.0 * KM, 1.0 / 3.0, -2.0)), compression_m: 0.1 + 0.2 }, LegState::default()],
+        quiet_ticks: 17,
+        touching: true,
+    };
+    vec![coasting, flying, landing, touching, world(Motion::Landed(resting())), world(Motion::Crashed(resting()))]
 }

@@ -2,9 +2,10 @@
 //!
 //! All problems are found at once, each named by its field. Nothing is silently replaced by a default.
 
-use super::v1::{CoastAttitudeV1, LandingV1, MotionV1, PhaseV1, ReasonV1, RestingV1, RigidV1, SaveV1, StateV1};
+use super::v1::{CoastAttitudeV1, GroundV1, LandingV1, MotionV1, PhaseV1, ReasonV1, RestingV1, RigidV1, SaveV1, StateV1};
 use crate::command::{Spot, Target, WARP_QUARTERS};
 use crate::world::World;
+use crate::world::ship::contact::Ground;
 use crate::world::ship::guidance::{Landing, Phase};
 use crate::world::ship::spec::ShipSpec;
 use crate::world::ship::warp::{Reason, Wake};
@@ -12,6 +13,7 @@ use crate::world::ship::{Coast, CoastAttitude, Effort, Motion, Resting, Rigid, S
 use crate::world::system::System;
 use engine::orbit::arc::Arc as OrbitArc;
 use engine::orbit::{BodyId, State};
+use engine::rigid::{Contact, LegState, PatchKey};
 use engine::space::{Position, Rotation, Vector, Velocity};
 use engine::time::SimTime;
 use engine::units::{AU, SPEED_OF_LIGHT};
@@ -24,6 +26,9 @@ const FARTHEST_M: f64 = 63_241.0 * AU;
 const FASTEST_TURN_RAD_S: f64 = 1.0e3;
 /// Times that are believed, ticks: ±100,000 years.
 const FARTHEST_TICKS: i64 = 60 * 86_400 * 36_525_000;
+
+/// Legs that are believed.
+const MOST_LEGS: usize = 64;
 
 /// Collects what is wrong while it converts.
 struct Checker<'a> {
@@ -185,6 +190,21 @@ impl Checker<'_> {
         let gate_m = self.within("ship.landing.gate_m", l.gate_m, -1e6, 1e7);
         Landing { body, spot, ground_m, gate_m, phase }
     }
+    fn ground(&mut self, g: &GroundV1) -> Ground {
+        if g.legs.len() > MOST_LEGS {
+            self.problems.push(format!("ship.ground.legs: {}, expected at most {MOST_LEGS}", g.legs.len()));
+        }
+        let key = g.patch.map(|(face, middle)| {
+            self.within("ship.ground.patch.0", f64::from(face), 0.0, 5.0);
+            PatchKey { face, middle }
+        });
+        let leg = |c: &mut Self, (hold, compression_m): &(Option<[f64; 3]>, f64)| LegState {
+            hold_m: hold.map(|h| c.vector("ship.ground.legs.hold", h, FARTHEST_M)),
+            compression_m: c.within("ship.ground.legs.compression", *compression_m, -1e3, 1e3),
+        };
+        let legs = g.legs.iter().take(MOST_LEGS).map(|l| leg(self, l)).collect();
+        Ground { contact: Contact { key, legs, quiet_ticks: g.quiet_ticks, touching: g.touching }, ..Ground::default() }
+    }
     fn ship(&mut self, save: &SaveV1, spec: &Arc<ShipSpec>) -> Ship {
         let s = &save.ship;
         let [throttle, rcs, felt_m_s2] = s.effort;
@@ -207,6 +227,7 @@ impl Checker<'_> {
             last_contact: s
                 .last_contact
                 .map(|(speed, at)| (self.within("ship.last_contact.0", speed, 0.0, SPEED_OF_LIGHT), self.ticks("ship.last_contact.1", at))),
+            ground: self.ground(&s.ground),
         }
     }
 }

@@ -6,11 +6,13 @@
 
 use crate::command::{Guidance, Hold};
 use crate::world::World;
+use crate::world::ship::contact::Ground;
 use crate::world::ship::guidance::{Landing, Phase};
 use crate::world::ship::warp::{Reason, Wake};
 use crate::world::ship::{Coast, CoastAttitude, Effort, Motion, Resting, Rigid, Ship};
 use crate::world::system::System;
 use engine::orbit::{BodyId, State};
+use engine::rigid::Contact;
 use engine::space::Centred;
 use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
@@ -77,6 +79,23 @@ pub struct ShipV1 {
     pub effort: [f64; 3],
     /// Speed (m/s) and tick of the last contact.
     pub last_contact: Option<(f64, i64)>,
+    /// What it keeps about the ground.
+    #[serde(default)]
+    pub ground: GroundV1,
+}
+
+/// Memory of contact, as kept.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GroundV1 {
+    /// Cube face and middle of the ground patch, cells.
+    pub patch: Option<(u8, [i32; 2])>,
+    /// For each leg: the point of the ground that it holds to (m, body-fixed axes), and its compression, m.
+    pub legs: Vec<(Option<[f64; 3]>, f64)>,
+    /// Ticks at rest.
+    pub quiet_ticks: u16,
+    /// Did something touch?
+    pub touching: bool,
 }
 
 /// A motion, as kept.
@@ -285,7 +304,10 @@ impl Keeper<'_> {
             landing,
             effort: Effort { throttle: effort_throttle, rcs, felt_m_s2 },
             last_contact,
+            // Of the ground only its memory is state: the mesh follows from it, the recorder looks back.
+            ground: Ground { contact, bubble: _, recorder: _ },
         } = ship;
+        let Contact { key, legs, quiet_ticks, touching } = contact;
         ShipV1 {
             motion: self.motion(motion),
             propellant_kg: *propellant_kg,
@@ -298,6 +320,12 @@ impl Keeper<'_> {
             landing: landing.as_ref().map(|l| self.landing(l)),
             effort: [*effort_throttle, *rcs, *felt_m_s2],
             last_contact: last_contact.map(|(speed, at)| (speed, at.ticks)),
+            ground: GroundV1 {
+                patch: key.map(|k| (k.face, k.middle)),
+                legs: legs.iter().map(|l| (l.hold_m.map(vec), l.compression_m)).collect(),
+                quiet_ticks: *quiet_ticks,
+                touching: *touching,
+            },
         }
     }
 }
