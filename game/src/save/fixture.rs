@@ -77,6 +77,7 @@ pub(crate) fn worlds() -> Vec<World> {
         spot: DVec3::new(0.6, 0.0, 0.8),
         ground_m: 12.5,
         gate_m: 8_000.0,
+        arrival_rad: 0.017,
         phase: Phase::Approach { brake: SimTime::from_ticks(50_400_100_000) },
     });
     let mut coasting = world(Motion::Fly(Rigid { rate: Vector::ZERO, ..rigid() }));

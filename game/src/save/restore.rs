@@ -185,10 +185,12 @@ impl Checker<'_> {
             PhaseV1::Brake => Phase::Brake,
             PhaseV1::Descend => Phase::Descend,
             PhaseV1::Touchdown => Phase::Touchdown,
+            PhaseV1::OutOfReach => Phase::OutOfReach,
         };
         let ground_m = self.within("ship.landing.ground_m", l.ground_m, -1e6, 1e6);
         let gate_m = self.within("ship.landing.gate_m", l.gate_m, -1e6, 1e7);
-        Landing { body, spot, ground_m, gate_m, phase }
+        let arrival_rad = self.within("ship.landing.arrival_rad", l.arrival_rad, 0.0, 1.5);
+        Landing { body, spot, ground_m, gate_m, arrival_rad, phase }
     }
     fn ground(&mut self, g: &GroundV1) -> Ground {
         if g.legs.len() > MOST_LEGS {

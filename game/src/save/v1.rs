@@ -209,6 +209,8 @@ pub struct LandingV1 {
     pub ground_m: f64,
     /// m.
     pub gate_m: f64,
+    /// Flight-path angle of arrival, rad below the horizon.
+    pub arrival_rad: f64,
     /// Where it stands.
     pub phase: PhaseV1,
 }
@@ -229,6 +231,8 @@ pub enum PhaseV1 {
     Descend,
     /// Coming to rest.
     Touchdown,
+    /// Nothing is flown.
+    OutOfReach,
 }
 
 /// Turns parts of a World into their kept form; knows the bodies' keys.
@@ -278,7 +282,7 @@ impl Keeper<'_> {
         }
     }
     fn landing(&self, l: &Landing) -> LandingV1 {
-        let Landing { body, spot, ground_m, gate_m, phase } = *l;
+        let Landing { body, spot, ground_m, gate_m, arrival_rad, phase } = *l;
         let phase = match phase {
             Phase::Wait { burn } => PhaseV1::Wait(burn.ticks),
             Phase::Burn => PhaseV1::Burn,
@@ -286,8 +290,9 @@ impl Keeper<'_> {
             Phase::Brake => PhaseV1::Brake,
             Phase::Descend => PhaseV1::Descend,
             Phase::Touchdown => PhaseV1::Touchdown,
+            Phase::OutOfReach => PhaseV1::OutOfReach,
         };
-        LandingV1 { body: self.key(body), spot: vec(spot), ground_m, gate_m, phase }
+        LandingV1 { body: self.key(body), spot: vec(spot), ground_m, gate_m, arrival_rad, phase }
     }
     fn ship(&self, ship: &Ship) -> ShipV1 {
         // Taken apart by name, so that a field that the World gains cannot be forgotten here.

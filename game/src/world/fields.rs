@@ -143,6 +143,7 @@ impl World {
                 Phase::Brake => (3, 0),
                 Phase::Descend => (4, 0),
                 Phase::Touchdown => (5, 0),
+                Phase::OutOfReach => (6, 0),
             };
             f.int("guidance", "landing.phase", phase);
             f.int("guidance", "landing.at", at);
@@ -150,6 +151,7 @@ impl World {
             f.vector("guidance", ["landing.spot.x", "landing.spot.y", "landing.spot.z"], landing.spot);
             f.real("guidance", "landing.ground_m", landing.ground_m);
             f.real("guidance", "landing.gate_m", landing.gate_m);
+            f.real("guidance", "landing.arrival_rad", landing.arrival_rad);
         }
         f.0
     }

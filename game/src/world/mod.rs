@@ -95,6 +95,9 @@ impl World {
             Action::Warp(level) => self.warp_asked = level.min(WARP_QUARTERS.len() as u8 - 1),
             Action::Target(target) => {
                 self.target = target.filter(|t| t.body.index() < self.system.bodies.len());
+                if ship.guidance == Guidance::Land {
+                    ship.landing = None;
+                }
                 if ship.hold == Hold::Target {
                     self.leave_arc();
                 }
@@ -224,7 +227,10 @@ impl World {
             Reason::Guidance => self.leave_arc(),
             Reason::Low => {
                 self.leave_arc();
-                self.warp_asked = self.warp_asked.min(WARP_ONE);
+                // The autopilot planned to come here; a pilot may not have.
+                if self.ship.guidance != Guidance::Land {
+                    self.warp_asked = self.warp_asked.min(WARP_ONE);
+                }
             }
             Reason::Leave | Reason::Enter(_) => {
                 let to = match coast.wake.reason {

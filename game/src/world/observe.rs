@@ -7,6 +7,7 @@ use super::ship::local::{Local, ground_m};
 use super::ship::{Motion, Rigid, aero, attitude, warp};
 use crate::command::{Guidance, Target};
 use core::f64::consts::{PI, TAU};
+use engine::light::occlusion::{Disc, separation_rad, visible_behind_disc};
 use engine::orbit::{BodyId, State};
 use engine::space::{Centred, sphere};
 use engine::units::G0;
@@ -128,18 +129,24 @@ impl World {
         TargetReadout { target, distance_m, closing_m_s: velocity.dot(offset.normalize_or(DVec3::ZERO)), ground_distance_m }
     }
 
-    /// The free fraction of the star's disc at the ship, and the body that hides most of it.
+    /// The free fraction of the star's disc at the ship, and the body that hides most of it. The dominating body hides it
+    /// too: at night that is not called an eclipse on the ground, but from orbit it is.
     fn sun(&self, rigid: &Rigid) -> (f64, Option<BodyId>) {
         let sky = Sky::at(&self.system, self.time);
         let here = sky.position(rigid.body) + engine::space::Vector::new(rigid.state.position.0);
-        let star = (sky.position(BodyId(0)) - here).0;
-        let hidden = |id: &BodyId| {
-            let to = (sky.position(*id) - here).0;
-            let (cross, along) = (to.cross(star).length(), to.dot(star));
-            along > 0.0 && cross < self.system.body(*id).radius_m * star.length()
-        };
-        let by = eclipse::casters(&self.system, &sky, here, 0.0, None).into_iter().find(hidden);
-        (if by.is_some() { 0.0 } else { 1.0 }, by)
+        let disc = |id: BodyId| Disc::of_sphere((sky.position(id) - here).0, self.system.body(id).radius_m);
+        let sun = disc(BodyId(0));
+        let mut visible = 1.0;
+        let mut worst = (1.0, None);
+        for id in eclipse::casters(&self.system, &sky, here, 0.0, None) {
+            let caster = disc(id);
+            let free = visible_behind_disc(sun.radius_rad, caster.radius_rad, separation_rad(sun.direction, caster.direction));
+            visible *= free;
+            if free < worst.0 {
+                worst = (free, Some(id));
+            }
+        }
+        (visible, worst.1)
     }
 
     fn warnings(&self, r: &Readout) -> Vec<Warning> {

@@ -7,7 +7,7 @@
 //!
 //! The level in force is `min(asked, limit)`. A limit by thrust, air or a planned burn ends by itself, and the clock goes
 //! back to what the pilot asked; an event that is reached (air, ground, a sphere of influence) lowers the *asked* level
-//! to 1×, so that the clock never runs away on the other side.
+//! to 1×, so that the clock never runs away on the other side (not so where the automatic landing planned to come there).
 
 use super::attitude::offset_of_body;
 use super::local::air_top_m;

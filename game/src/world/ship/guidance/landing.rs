@@ -54,6 +54,8 @@ pub enum Phase {
     Descend,
     /// On the ground, engine off, coming to rest.
     Touchdown,
+    /// Nothing is flown: the propellant does not suffice for a powered landing there.
+    OutOfReach,
 }
 
 impl Phase {
@@ -66,6 +68,7 @@ impl Phase {
             Self::Brake => "Braking towards the spot",
             Self::Descend => "Descending to the spot",
             Self::Touchdown => "Touchdown",
+            Self::OutOfReach => "Out of reach: too little propellant for this spot",
         }
     }
 }
@@ -81,6 +84,8 @@ pub struct Landing {
     pub ground_m: f64,
     /// Altitude of the gate above the datum, m: over the spot, above mountains and thick air.
     pub gate_m: f64,
+    /// Flight-path angle at which the ballistic arc arrives above the spot, rad below the horizon.
+    pub arrival_rad: f64,
     /// Where it stands.
     pub phase: Phase,
 }
@@ -105,7 +110,7 @@ struct Way {
 impl Landing {
     /// True while the programme has nothing to do before a planned tick.
     pub fn coasts(&self) -> bool {
-        self.wake().is_some()
+        self.wake().is_some() || self.phase == Phase::OutOfReach
     }
     /// The tick that it waits for, if it waits.
     pub fn wake(&self) -> Option<SimTime> {
@@ -159,7 +164,7 @@ pub fn controls(ship: &mut Ship, local: &Local, rigid: &Rigid, target: Option<Ta
         Phase::Approach { brake } if local.time < brake => landing.approach(ship, local, rigid),
         Phase::Approach { .. } | Phase::Brake => landing.brake(ship, local, rigid),
         Phase::Descend => landing.descend(ship, local, rigid),
-        Phase::Touchdown => idle(),
+        Phase::Touchdown | Phase::OutOfReach => idle(),
     };
     ship.landing = Some(landing);
     controls
@@ -224,12 +229,12 @@ impl Landing {
             (((wanted - way.closing) / 3.0).clamp(-planned, planned), (climb_wanted - climb) / 2.0)
         };
         upward = upward.max(self.over_ground_ahead(local, &way, upward)).max(over_thick_air(ship, local, planned));
-        upward = upward.clamp(-2.0 * gravity, 0.8 * limit);
+        upward = upward.clamp(-(2.0 * gravity).max(0.5), 0.8 * limit);
         let across = way.level - way.along * way.closing;
         let settle_s = (0.25 * way.distance_m / way.level.length().max(1.0)).clamp(3.0, 60.0);
         let sideways = (-across / settle_s).clamp_length_max(0.3 * limit);
         let push = way.along * ahead + sideways + local.up * upward - weight(local);
-        let direction = if push.length() > 0.05 * limit { push } else { local.up * gravity - local.v_surface * 0.01 };
+        let direction = if push.length() > (0.05 * limit).min(0.3 * gravity) { push } else { local.up * gravity - local.v_surface * 0.01 };
         fly_along(ship, local, rigid, push, direction, 0.0)
     }
 

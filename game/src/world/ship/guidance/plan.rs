@@ -21,8 +21,10 @@ use engine::time::{SimTime, TICK_S};
 use engine::units::{DAY, DEG, HOUR, KM};
 use glam::DVec3;
 
-/// Flight-path angle at which an arc arrives above the spot, rad below the horizon.
-const ARRIVAL_RAD: f64 = 1.0 * DEG;
+/// Flight-path angles at which an arc may arrive above the spot, ° below the horizon; the first that reaches it is taken.
+const ARRIVALS_DEG: [f64; 3] = [1.0, 4.0, 12.0];
+/// What the descent costs besides the speed of arrival, as a fraction of it.
+const DESCENT_RESERVE: f64 = 0.15;
 /// Instants per revolution at which a burn is tried.
 const TRIES_PER_REVOLUTION: f64 = 120.0;
 /// Price of waiting: this fraction of the delta-v left, per second.
@@ -55,11 +57,21 @@ impl Landing {
             None => flat_site(local.body, site_ahead(ship, local)),
         };
         let ground = ground_m(local.body, spot);
-        let mut landing = Self { body: local.id, spot, ground_m: ground, gate_m: gate_m(local.body, spot), phase: Phase::Brake };
-        if local.altitude_m > floor_m(local.body)
-            && let Some(burn) = landing.best_burn(ship, local)
-        {
-            landing.phase = Phase::Wait { burn: burn.plus(-ticks(lead_s(ship))).max(local.time.plus(1)) };
+        let gate_m = gate_m(local.body, spot);
+        let mut landing = Self { body: local.id, spot, ground_m: ground, gate_m, arrival_rad: 0.0, phase: Phase::Brake };
+        if local.altitude_m <= floor_m(local.body) {
+            return landing;
+        }
+        for arrival_deg in ARRIVALS_DEG {
+            landing.arrival_rad = arrival_deg * DEG;
+            if let Some((cost, burn)) = landing.best_burn(ship, local) {
+                // Arrival is at about the circular speed of the surface, or more from high up.
+                let arrival = (local.body.gm_m3_s2 * (2.0 / local.body.radius_m - 1.0 / local.r.length().max(local.body.radius_m))).sqrt();
+                let enough = cost + (1.0 + DESCENT_RESERVE) * arrival < ship.delta_v_m_s();
+                let burn = burn.plus(-ticks(lead_s(ship))).max(local.time.plus(1));
+                landing.phase = if enough { Phase::Wait { burn } } else { Phase::OutOfReach };
+                break;
+            }
         }
         landing
     }
@@ -88,8 +100,8 @@ impl Landing {
                 return None;
             }
             let (sin_t, cos_t) = libm::sincos(theta);
-            let (sin_f, cos_f) = libm::sincos(ARRIVAL_RAD);
-            let denominator = cos_f * cos_f * (r2 / r1 - libm::cos(theta + ARRIVAL_RAD) / cos_f);
+            let (sin_f, cos_f) = libm::sincos(self.arrival_rad);
+            let denominator = cos_f * cos_f * (r2 / r1 - libm::cos(theta + self.arrival_rad) / cos_f);
             let q = (1.0 - cos_t) / denominator;
             if denominator <= 0.0 || !q.is_finite() {
                 return None;
@@ -119,19 +131,20 @@ impl Landing {
         Some(Shot { velocity, flight_s })
     }
 
-    /// The instant at which the change to an arc is cheapest, waiting counted; none where no arc reaches the spot.
-    fn best_burn(&self, ship: &Ship, local: &Local) -> Option<SimTime> {
+    /// The delta-v (m/s) and the instant of the change to an arc that is cheapest, waiting counted; none where no arc reaches
+    /// the spot.
+    fn best_burn(&self, ship: &Ship, local: &Local) -> Option<(f64, SimTime)> {
         let gm = local.body.gm_m3_s2;
         let state = State::<Centred> { position: Position::new(local.r), velocity: Velocity::new(local.v) };
         let arc = Arc { body: local.id, gm_m3_s2: gm, epoch: local.time, state };
         let a = 1.0 / (2.0 / local.r.length() - local.v.length_squared() / gm);
         let closed = a > 0.0 && a.is_finite();
         let period = if closed { TAU * (a * a * a / gm).sqrt() } else { 2.0 * HOUR };
-        let horizon = if closed { (16.0 * period).min(2.0 * DAY) } else { period };
+        let horizon = if closed { (16.0 * period).min(2.0 * DAY).max(1.2 * period) } else { period };
         let floor = local.body.radius_m + floor_m(local.body);
         let price = PRICE_OF_WAITING * ship.delta_v_m_s();
-        let step = period.min(12.0 * HOUR) / TRIES_PER_REVOLUTION;
-        let mut best: Option<(f64, SimTime)> = None;
+        let step = period / TRIES_PER_REVOLUTION;
+        let mut best: Option<(f64, f64, SimTime)> = None;
         let mut wait = lead_s(ship) + 5.0;
         while wait < horizon {
             let at = local.time.plus(ticks(wait));
@@ -140,9 +153,10 @@ impl Landing {
                 break;
             }
             if let Some(shot) = self.shot(local.body, at, s.position.0, s.position.0.cross(s.velocity.0)) {
-                let cost = (shot.velocity - s.velocity.0).length() + price * (wait + shot.flight_s);
+                let change = (shot.velocity - s.velocity.0).length();
+                let cost = change + price * (wait + shot.flight_s);
                 if best.is_none_or(|b| cost < b.0) {
-                    best = Some((cost, at));
+                    best = Some((cost, change, at));
                 }
             }
             // Nothing that comes later can be cheaper.
@@ -151,7 +165,7 @@ impl Landing {
             }
             wait += step;
         }
-        best.map(|b| b.1)
+        best.map(|b| (b.1, b.2))
     }
 }
 
