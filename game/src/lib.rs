@@ -14,6 +14,7 @@ pub mod picture;
 pub mod replay;
 pub mod save;
 pub mod session;
+pub mod settings;
 pub mod sound;
 pub mod view;
 pub mod world;
