@@ -73,7 +73,8 @@ pub fn draw(
 /// disc, sky (which lays the air over `opaque` and its depth, into `aerial`). From the tables of the air to the finished light: the HDR texture that the picture is made of.
 fn light(f: &mut FrameContext<'_>, passes: &mut Passes) -> Result<wgpu::TextureView, RenderError> {
     f.clear_opaque();
-    let air = passes.vacuum.clone();
+    let skip = passes.air_tables.skip(f.scene);
+    let air = if f.runs("air_tables", skip) { passes.air_tables.record(f) } else { passes.air_tables.values() };
     let shadow = passes.no_shadow.clone();
     let light = f.shared.light_group(f.gpu, &air, &shadow);
 
@@ -97,5 +98,6 @@ fn light(f: &mut FrameContext<'_>, passes: &mut Passes) -> Result<wgpu::TextureV
         passes.stars.record(f);
     }
 
-    Ok(f.targets.opaque.view.clone())
+    let skip = passes.sky.skip(f.scene);
+    Ok(if f.runs("sky", skip) { passes.sky.record(f, &light) } else { f.targets.opaque.view.clone() })
 }

@@ -65,30 +65,6 @@ pub struct Shared {
     pub compare: wgpu::Sampler,
 }
 
-impl AirTables {
-    /// No air at all: transmittance 1, nothing scattered.
-    pub fn vacuum(gpu: &Gpu) -> Self {
-        let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
-        let table = |label, texel: [f32; 4]| {
-            let t = Texture::new(&gpu.device, label, [1, 1], wgpu::TextureFormat::Rgba16Float, usage);
-            t.write(&gpu.queue, 0, 0, bytemuck::bytes_of(&texel.map(half::f16::from_f32)));
-            t.array_view()
-        };
-        let airs = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("no air"),
-            size: 16 * 1024,
-            usage: BufferUsages::UNIFORM | BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
-        Self {
-            airs,
-            transmittance: table("no air: transmittance", [1.0; 4]),
-            multiple: table("no air: multiple scattering", [0.0; 4]),
-            irradiance: table("no air: irradiance", [0.0; 4]),
-        }
-    }
-}
-
 impl ShadowMap {
     /// Nothing throws a shadow.
     pub fn none(gpu: &Gpu) -> Self {

@@ -2,10 +2,13 @@
 //!
 //! A pass has `new` (compiles), `skip` (why the scene does not need it, in words) and `record`.
 
+pub mod air_tables;
 pub mod bloom;
 pub mod exposure;
 pub mod ship_mesh;
 pub mod ships;
+pub mod sky;
+pub mod sky_probe;
 pub mod smooth_body;
 pub mod stars;
 pub mod sun_disc;
@@ -13,14 +16,14 @@ pub mod tonemap;
 
 use super::RenderError;
 use super::maps::MapStore;
-use super::shared::{AirTables, ShadowMap, Shared};
+use super::shared::{ShadowMap, Shared};
 use crate::gpu::{Gpu, ShaderLibrary};
 use crate::scene::Snapshot;
 
 /// All passes, compiled.
 pub struct Passes {
-    /// What the air tables are while no body in the scene has air.
-    pub vacuum: AirTables,
+    /// Transmittance, multiple scattering and irradiance of every air in view.
+    pub air_tables: air_tables::AirBaker,
     /// What the shadow map is while no ship throws a shadow.
     pub no_shadow: ShadowMap,
     /// Spheres without terrain.
@@ -35,6 +38,8 @@ pub struct Passes {
     pub sun_disc: sun_disc::SunDisc,
     /// Glare.
     pub bloom: bloom::Bloom,
+    /// Air laid over the picture.
+    pub sky: sky::Sky,
     /// Histogram and adaptation.
     pub exposure: exposure::Exposure,
     /// HDR to the screen.
@@ -45,7 +50,7 @@ impl Passes {
     /// Compiles all.
     pub fn new(gpu: &Gpu, shaders: &ShaderLibrary, shared: &Shared, maps: &MapStore) -> Result<Self, RenderError> {
         Ok(Self {
-            vacuum: AirTables::vacuum(gpu),
+            air_tables: air_tables::AirBaker::new(gpu, shaders)?,
             no_shadow: ShadowMap::none(gpu),
             smooth_body: smooth_body::SmoothBody::new(gpu, shaders, shared, maps)?,
             ships: ships::Ships::new(gpu, shaders, shared)?,
@@ -53,13 +58,14 @@ impl Passes {
             stars: stars::Stars::new(gpu, shaders, shared)?,
             sun_disc: sun_disc::SunDisc::new(gpu, shaders, shared)?,
             bloom: bloom::Bloom::new(gpu, shaders, shared)?,
+            sky: sky::Sky::new(gpu, shaders, shared)?,
             exposure: exposure::Exposure::new(gpu, shaders, shared)?,
             tonemap: tonemap::Tonemap::new(gpu, shaders, shared)?,
         })
     }
 
-    /// The slot of the air tables of each body of the scene: none has any yet.
+    /// The slot of the air tables of each body of the scene.
     pub fn air_slots(&mut self, scene: &Snapshot) -> Vec<Option<u32>> {
-        vec![None; scene.bodies.len()]
+        self.air_tables.assign(scene)
     }
 }

@@ -1,0 +1,209 @@
+//! Air tables: transmittance, multiple scattering and sky irradiance of each air, baked only when a medium is new or has changed.
+//!
+//! A slot (a layer of three texture arrays) belongs to a body's id; the slot longest unused is given away when all are taken.
+//! What the tables mean and how to ask them is in `shaders/lib/air.wgsl`; bodies without air have no slot and ask nothing.
+
+use crate::air::Medium;
+use crate::gpu::buffer::Uniform;
+use crate::gpu::texture::{Texture, linear_sampler};
+use crate::gpu::{Gpu, ShaderLibrary};
+use crate::render::RenderError;
+use crate::render::pipeline::{compute_pipeline, sampler_entry, texture_entry, uniform_entry};
+use crate::render::shared::{AirTables, FrameContext};
+use crate::render::targets::HDR;
+use crate::scene::Snapshot;
+use crate::scene::gpu_data::{AirUniform, AirsUniform, MAX_AIRS};
+use bytemuck::Zeroable;
+use wgpu::{BindingResource, TextureUsages, TextureViewDimension};
+
+/// Texels of the tables, as in `shaders/lib/air.wgsl`: transmittance, multiple scattering, irradiance.
+const SIZES: [[u32; 2]; 3] = [[256, 64], [64, 32], [64, 16]];
+
+/// Whose air a slot holds.
+struct Slot {
+    id: u16,
+    medium: Medium,
+    used: u64,
+    baked: bool,
+}
+
+/// The pass.
+pub struct AirBaker {
+    layouts: [wgpu::BindGroupLayout; 3],
+    pipelines: [wgpu::ComputePipeline; 3],
+    tables: [Texture; 3],
+    values: AirTables,
+    airs: Uniform<AirsUniform>,
+    linear: wgpu::Sampler,
+    slots: Vec<Slot>,
+    clock: u64,
+}
+
+impl AirBaker {
+    /// Compiles the three bakes and makes room for [`MAX_AIRS`] airs.
+    #[allow(clippy::cast_possible_truncation)]
+    pub fn new(gpu: &Gpu, shaders: &ShaderLibrary) -> Result<Self, RenderError> {
+        let storage = wgpu::BindGroupLayoutEntry {
+            binding: 1,
+            visibility: wgpu::ShaderStages::COMPUTE,
+            ty: wgpu::BindingType::StorageTexture {
+                access: wgpu::StorageTextureAccess::WriteOnly,
+                format: HDR,
+                view_dimension: TextureViewDimension::D2,
+            },
+            count: None,
+        };
+        let array = TextureViewDimension::D2Array;
+        let entries = [
+            uniform_entry(0),
+            storage,
+            texture_entry(2, array),
+            sampler_entry(3, wgpu::SamplerBindingType::Filtering),
+            texture_entry(4, array),
+        ];
+        // Each bake reads the tables before it.
+        let layouts = [2, 4, 5].map(|count| {
+            gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("air bake"), entries: &entries[..count] })
+        });
+        let bake = |layout: &wgpu::BindGroupLayout, file: &str| -> Result<_, RenderError> {
+            Ok(compute_pipeline(gpu, file, &shaders.load(&gpu.device, file)?, &[layout], "bake"))
+        };
+        let pipelines = [
+            bake(&layouts[0], "pass/air_transmittance.wgsl")?,
+            bake(&layouts[1], "pass/air_multiscatter.wgsl")?,
+            bake(&layouts[2], "pass/air_irradiance.wgsl")?,
+        ];
+        let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::STORAGE_BINDING | TextureUsages::COPY_SRC;
+        let tables = SIZES.map(|[w, h]| Texture::with(&gpu.device, "air table", [w, h, MAX_AIRS as u32], 1, HDR, usage));
+        let airs = Uniform::new(&gpu.device, "Airs", wgpu::BufferUsages::empty());
+        let values = AirTables {
+            airs: airs.buffer.clone(),
+            transmittance: tables[0].array_view(),
+            multiple: tables[1].array_view(),
+            irradiance: tables[2].array_view(),
+        };
+        let linear = linear_sampler(&gpu.device, "air tables", false);
+        Ok(Self { layouts, pipelines, tables, values, airs, linear, slots: Vec::new(), clock: 0 })
+    }
+
+    /// The slot of each body of the scene that has air; new and changed media wait for [`AirBaker::record`].
+    pub fn assign(&mut self, scene: &Snapshot) -> Vec<Option<u32>> {
+        self.clock += 1;
+        scene.bodies.iter().map(|body| body.air.as_ref().and_then(|medium| self.slot_of(body.id, medium))).collect()
+    }
+
+    #[allow(clippy::cast_possible_truncation)]
+    fn slot_of(&mut self, id: u16, medium: &Medium) -> Option<u32> {
+        let fresh = Slot { id, medium: medium.clone(), used: self.clock, baked: false };
+        let at = match self.slots.iter().position(|s| s.id == id) {
+            Some(i) => i,
+            None if self.slots.len() < MAX_AIRS => {
+                self.slots.push(fresh);
+                return Some(self.slots.len() as u32 - 1);
+            }
+            None => {
+                let (i, oldest) = self.slots.iter().enumerate().min_by_key(|(_, s)| s.used)?;
+                if oldest.used == self.clock {
+                    return None; // more airs in one scene than slots: the farthest go without
+                }
+                i
+            }
+        };
+        let slot = self.slots.get_mut(at)?;
+        if slot.id == id && slot.medium == *medium {
+            slot.used = self.clock;
+        } else {
+            *slot = fresh;
+        }
+        Some(at as u32)
+    }
+
+    /// Why the scene does not need it.
+    pub fn skip(&self, scene: &Snapshot) -> Option<String> {
+        if scene.bodies.iter().all(|b| b.air.is_none()) {
+            return Some("no body in the scene has air".to_owned());
+        }
+        self.slots.iter().all(|s| s.baked).then(|| "no medium has changed since its tables were made".to_owned())
+    }
+
+    /// Bakes what waits (everything, where the frame is forced) and gives the tables.
+    pub fn record(&mut self, f: &mut FrameContext<'_>) -> AirTables {
+        let forced = f.scene.force.all;
+        for (i, slot) in self.slots.iter_mut().enumerate() {
+            slot.baked &= !(forced && f.air_slots.iter().flatten().any(|s| *s as usize == i));
+        }
+        let gpu = f.gpu;
+        self.bake(gpu, &mut f.compute("air_tables"));
+        self.values()
+    }
+
+    /// The tables as they are.
+    pub fn values(&self) -> AirTables {
+        self.values.clone()
+    }
+
+    /// Bakes every slot that waits.
+    #[allow(clippy::cast_possible_truncation)]
+    pub fn bake(&mut self, gpu: &Gpu, pass: &mut wgpu::ComputePass<'_>) {
+        let mut all = AirsUniform::zeroed();
+        for (air, slot) in all.list.iter_mut().zip(&self.slots) {
+            *air = AirUniform::new(&slot.medium);
+        }
+        self.airs.write(&gpu.queue, &all);
+        let waiting: Vec<u32> = self.slots.iter().enumerate().filter(|(_, s)| !s.baked).map(|(i, _)| i as u32).collect();
+        for slot in waiting {
+            self.bake_slot(gpu, pass, slot);
+        }
+        self.slots.iter_mut().for_each(|s| s.baked = true);
+    }
+
+    fn bake_slot(&self, gpu: &Gpu, pass: &mut wgpu::ComputePass<'_>, slot: u32) {
+        let layer = |table: &Texture, dimension| {
+            table.texture.create_view(&wgpu::TextureViewDescriptor {
+                dimension: Some(dimension),
+                base_array_layer: slot,
+                array_layer_count: Some(1),
+                ..Default::default()
+            })
+        };
+        let outputs = [0, 1, 2].map(|i| layer(&self.tables[i], TextureViewDimension::D2));
+        let inputs = [0, 1].map(|i| layer(&self.tables[i], TextureViewDimension::D2Array));
+        let size = size_of::<AirUniform>() as u64;
+        let air = wgpu::BufferBinding { buffer: &self.airs.buffer, offset: u64::from(slot) * size, size: wgpu::BufferSize::new(size) };
+        for (i, count) in [2, 4, 5].into_iter().enumerate() {
+            let resources = [
+                BindingResource::Buffer(air.clone()),
+                BindingResource::TextureView(&outputs[i]),
+                BindingResource::TextureView(&inputs[0]),
+                BindingResource::Sampler(&self.linear),
+                BindingResource::TextureView(&inputs[1]),
+            ];
+            let entries: Vec<_> =
+                (0..).zip(resources).take(count).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
+            let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("air bake"),
+                layout: &self.layouts[i],
+                entries: &entries,
+            });
+            pass.set_pipeline(&self.pipelines[i]);
+            pass.set_bind_group(0, &group, &[]);
+            let [w, h] = SIZES[i];
+            // The first bake works on 8 × 8 texels a group, the others on one.
+            if i == 0 { pass.dispatch_workgroups(w.div_ceil(8), h.div_ceil(8), 1) } else { pass.dispatch_workgroups(w, h, 1) }
+        }
+    }
+
+    /// Tables of one medium alone, in slot 0, submitted: for probes and tests.
+    pub fn bake_alone(&mut self, gpu: &Gpu, medium: &Medium) -> AirTables {
+        self.slots = vec![Slot { id: 0, medium: medium.clone(), used: 0, baked: false }];
+        let mut encoder = gpu.encoder("air tables");
+        self.bake(gpu, &mut encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default()));
+        gpu.submit(encoder);
+        self.values()
+    }
+
+    /// The texture arrays: transmittance, multiple scattering, irradiance (the last two hold square roots).
+    pub const fn textures(&self) -> &[Texture; 3] {
+        &self.tables
+    }
+}

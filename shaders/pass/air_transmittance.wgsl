@@ -1,0 +1,20 @@
+// Table of transmittance to the top of the air, by altitude and zenith cosine. Rust side: engine/src/render/pass/air_tables.rs.
+
+#include "lib/air.wgsl"
+
+@group(0) @binding(0) var<uniform> air: Air;
+@group(0) @binding(1) var table: texture_storage_2d<rgba16float, write>;
+
+@compute @workgroup_size(8, 8)
+fn bake(@builtin(global_invocation_id) id: vec3<u32>) {
+    if any(vec2<f32>(id.xy) >= TRANSMITTANCE_SIZE) {
+        return;
+    }
+    let point = transmittance_point(air, table_x(id.xy, TRANSMITTANCE_SIZE));
+    var path: AirPath;
+    path.radius = air.shape.x + point.x;
+    path.altitude = point.x;
+    path.slope = path.radius * point.y;
+    let depth = air_optical_depth(air, path, point.z, 64u);
+    textureStore(table, id.xy, vec4<f32>(exp(-depth), 1.0));
+}
