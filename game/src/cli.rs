@@ -101,6 +101,19 @@ pub enum Backend {
     Gl,
 }
 
+impl Backend {
+    /// In the engine's words.
+    pub const fn choice(self) -> engine::gpu::BackendChoice {
+        use engine::gpu::BackendChoice;
+        match self {
+            Self::Vulkan => BackendChoice::Vulkan,
+            Self::Metal => BackendChoice::Metal,
+            Self::Dx12 => BackendChoice::Dx12,
+            Self::Gl => BackendChoice::Gl,
+        }
+    }
+}
+
 /// Arguments of `headless`.
 #[derive(Clone, Debug, Args)]
 pub struct HeadlessArgs {

@@ -2,8 +2,11 @@
 //!
 //! Not here: the words themselves ([`crate::cli`]), the loop that modes share ([`crate::session`]).
 
+pub mod headless;
 pub mod places;
 pub mod probe;
+pub mod shot;
+pub mod studio;
 
 use crate::cli::{Cli, Mode, Places, Probe};
 use std::process::ExitCode;

@@ -1,0 +1,37 @@
+//! `syzygy shot`: one picture of a start, a moment and a camera.
+
+use super::studio::{Studio, StudioError, write_passes};
+use crate::cli::ShotArgs;
+use crate::session::Session;
+use crate::view::Rig;
+use crate::view::place::PlaceError;
+use engine::scene::Force;
+use thiserror::Error;
+
+/// Why there is no picture.
+#[derive(Debug, Error, miette::Diagnostic)]
+pub enum ShotError {
+    /// The camera is none.
+    #[error(transparent)]
+    Camera(#[from] PlaceError),
+    /// It was not drawn or written.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Studio(#[from] StudioError),
+}
+
+/// Draws the picture and writes what was asked for.
+pub fn run(args: &ShotArgs, mut session: Session) -> Result<(), ShotError> {
+    let rig = Rig::parse(&args.camera, &session.world.system)?;
+    if let Some(time) = args.time() {
+        // The ship keeps its place about its body; the sky moves to the moment.
+        session.world.move_clock(time);
+    }
+    let mut studio = Studio::open(args.backend, args.size, Force { all: args.force_passes })?;
+    let report = studio.draw(&session.world, &rig)?;
+    studio.write(&args.out)?;
+    if let Some(path) = &args.passes {
+        write_passes(path, &report)?;
+    }
+    Ok(())
+}
