@@ -3,8 +3,10 @@
 //! Not here: the words themselves ([`crate::cli`]), the loop that modes share ([`crate::session`]).
 
 pub mod headless;
+pub mod open;
 pub mod places;
 pub mod probe;
+pub mod replay;
 pub mod shot;
 pub mod studio;
 
@@ -22,6 +24,10 @@ pub enum Error {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Save(#[from] crate::save::SaveError),
+    /// A replay cannot be read or written.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Log(#[from] crate::replay::LogError),
 }
 
 /// Runs the mode that the command line names, and turns what comes of it into an exit code.

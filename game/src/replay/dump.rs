@@ -1,11 +1,11 @@
 //! A log as text: for a person who wants to know what was flown.
 
 use super::log::Log;
-use crate::save::slots::Label;
 use crate::world::fields::SUBSYSTEMS;
+use engine::time::SimTime;
 
 /// The log, line by line: its start, what changed at which tick, the last check.
-pub fn text(log: &Log, label: Option<&Label>) -> String {
+pub fn text(log: &Log) -> String {
     let mut out = String::new();
     let mut line = |text: String| {
         out.push_str(&text);
@@ -15,8 +15,8 @@ pub fn text(log: &Log, label: Option<&Label>) -> String {
         "recorded by Syzygy {}, system {} ({:.12}), ship {} ({:.12})",
         log.game_version, log.system, log.system_hash, log.ship, log.ship_hash
     ));
-    if let Some(l) = label {
-        line(format!("start: {}, {}, altitude {:.1} m", l.time.utc(), l.body, l.altitude_m));
+    if let Ok(start) = crate::save::decode(&log.start) {
+        line(format!("start: {}, {:?}", SimTime::from_ticks(start.time_ticks).utc(), start.ship.motion));
     }
     line(format!("{} ticks ({:.1} s), {} checks, {} rows of bits", log.ticks, log.ticks as f64 / 60.0, log.checks.len(), log.rows.len()));
     let mut events: Vec<(u64, String)> = log.actions.iter().map(|(tick, action)| (*tick, format!("{action:?}"))).collect();

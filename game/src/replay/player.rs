@@ -7,6 +7,7 @@ use super::log::{Log, Row};
 use crate::command::{Axes, Commands};
 use crate::world::World;
 use crate::world::fields::SUBSYSTEMS;
+use std::collections::BTreeMap;
 use std::fmt;
 
 /// Where a run parted from its record.
@@ -124,26 +125,35 @@ impl Player {
     }
 }
 
-/// The first field that differs: in `first` if there is one, else in any subsystem.
+/// The first field that differs: in `first` if there is one, else in any subsystem. A name may occur several times (one
+/// per leg of the gear): the n-th is compared with the n-th.
 fn difference(log: &Log, row: &Row, world: &World, first: &str) -> Option<FieldDifference> {
-    let now = world.fields();
-    let recorded: Vec<((&str, &str), u64)> =
-        row.fields.iter().filter_map(|(n, bits)| log.names.get(usize::from(*n)).map(|(s, f)| ((s.as_str(), f.as_str()), *bits))).collect();
-    let mut all: Vec<FieldDifference> = Vec::new();
-    for (name, bits) in &recorded {
-        let other = now.iter().find(|(s, f, _)| (*s, *f) == *name).map(|f| f.2);
-        if other != Some(*bits) {
-            let name = (name.0.to_owned(), name.1.to_owned());
-            all.push(FieldDifference { tick: row.tick, name, recorded: Some(*bits), now: other });
-        }
+    let names = |n: u16| log.names.get(usize::from(n)).map(|(s, f)| (s.as_str(), f.as_str()));
+    let recorded = numbered(row.fields.iter().filter_map(|(n, bits)| names(*n).map(|name| (name, *bits))));
+    let now = numbered(world.fields().into_iter().map(|(s, f, bits)| ((s, f), bits)));
+    let bits = |all: &Numbered<'_>, key| all.get(key).map(|(_, bits)| *bits);
+    let differ = recorded.keys().chain(now.keys()).filter(|key| bits(&recorded, *key) != bits(&now, *key));
+    let best = differ.min_by_key(|key| (key.0.0 != first, order(&recorded, &now, key)))?;
+    let name = |(s, f): (&str, &str)| (s.to_owned(), f.to_owned());
+    Some(FieldDifference { tick: row.tick, name: name(best.0), recorded: bits(&recorded, best), now: bits(&now, best) })
+}
+
+/// Fields by name and occurrence, with their place in the list and their bits.
+type Numbered<'a> = BTreeMap<((&'a str, &'a str), usize), (usize, u64)>;
+
+fn numbered<'a>(fields: impl Iterator<Item = ((&'a str, &'a str), u64)>) -> Numbered<'a> {
+    let mut seen = BTreeMap::new();
+    let mut all = BTreeMap::new();
+    for (place, (name, bits)) in fields.enumerate() {
+        let count = seen.entry(name).or_insert(0_usize);
+        all.insert((name, *count), (place, bits));
+        *count += 1;
     }
-    for (s, f, bits) in &now {
-        if !recorded.iter().any(|(name, _)| *name == (*s, *f)) {
-            all.push(FieldDifference { tick: row.tick, name: ((*s).to_owned(), (*f).to_owned()), recorded: None, now: Some(*bits) });
-        }
-    }
-    let best = all.iter().position(|d| d.name.0 == first).unwrap_or(0);
-    all.into_iter().nth(best)
+    all
+}
+
+fn order(recorded: &Numbered<'_>, now: &Numbered<'_>, key: &((&str, &str), usize)) -> usize {
+    recorded.get(key).or_else(|| now.get(key)).map_or(usize::MAX, |(place, _)| *place)
 }
 
 #[cfg(test)]
