@@ -1,5 +1,6 @@
 //! An arc: the path of a coasting ship, from an epoch on. It is sampled, never stepped, so the bits of a sample depend on
-//! the epoch and the tick alone, not on warp, frame rate or how often it was looked at.
+//! the epoch and the tick alone, not on warp, frame rate or how often it was looked at. Events on it (into the air, out of a
+//! sphere of influence, into a moon's) are searched for in [`super::events`].
 
 use super::{BodyId, State, kepler};
 use crate::space::Centred;
@@ -22,5 +23,10 @@ impl Arc {
     /// The state at `t` (which may lie before the epoch).
     pub fn sample(&self, t: SimTime) -> State<Centred> {
         kepler::propagate(self.gm_m3_s2, &self.state, t.since(self.epoch))
+    }
+
+    /// Distance from the body's centre at `t`, m.
+    pub fn radius_m(&self, t: SimTime) -> f64 {
+        self.sample(t).position.length()
     }
 }
