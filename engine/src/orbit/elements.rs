@@ -119,7 +119,7 @@ impl Elements {
         let (p, q) = self.perifocal();
         let (sin, cos) = libm::sincos(self.true_anomaly_rad);
         let semi_latus = self.periapsis_m * (1.0 + self.eccentricity);
-        let r = semi_latus / (1.0 + self.eccentricity * cos);
+        let r = if semi_latus > 0.0 { semi_latus / (1.0 + self.eccentricity * cos) } else { 0.0 };
         let speed = if semi_latus > 0.0 { (self.gm_m3_s2 / semi_latus).sqrt() } else { 0.0 };
         State {
             position: Position::new((p * cos + q * sin) * r),
@@ -217,5 +217,109 @@ impl Elements {
         let cos = (semi_latus / radius_m - 1.0) / self.eccentricity;
         let open_limit = if self.is_bound() { -1.0 } else { -1.0 / self.eccentricity };
         (cos >= open_limit && cos <= 1.0).then(|| libm::acos(cos))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::orbit::kepler::propagate;
+    use crate::space::Centred;
+
+    type S = State<Centred>;
+    const GM: f64 = 3.986_004_418e14;
+
+    #[test]
+    fn vallado_example_2_5() {
+        // Vallado 2013, example 2-5 (km, km/s): a published state and its elements.
+        let s = S {
+            position: Position::xyz(6_524.834e3, 6_862.875e3, 6_448.296e3),
+            velocity: Velocity::xyz(4.901_327e3, 5.533_756e3, -1.976_341e3),
+        };
+        let e = Elements::from_state(GM, &s);
+        let deg = 180.0 / PI;
+        assert!((e.semi_major_m() - 36_127.343e3).abs() < 20.0, "{}", e.semi_major_m());
+        assert!((e.eccentricity - 0.832_853).abs() < 1e-6);
+        for (got, published) in
+            [(e.inclination_rad, 87.870), (e.node_rad, 227.898), (e.argument_rad, 53.38), (positive(e.true_anomaly_rad), 92.335)]
+        {
+            assert!((got * deg - published).abs() < 6e-3, "{} for {published}", got * deg);
+        }
+    }
+
+    #[test]
+    fn every_conic_round_trips() {
+        for e in [0.0, 1e-5, 0.5, 0.999_999, 1.0, 1.000_001, 3.0] {
+            for [i, node, argument] in [[0.0, 0.0, 0.0], [0.7, 2.0, 5.0], [2.9, 4.0, 1.0]] {
+                for nu in [-1.4, 0.0, 0.3, 1.5] {
+                    let given = Elements {
+                        gm_m3_s2: GM,
+                        periapsis_m: 7.0e6,
+                        eccentricity: e,
+                        inverse_semi_major_per_m: (1.0 - e) / 7.0e6,
+                        inclination_rad: i,
+                        node_rad: node,
+                        argument_rad: if e == 0.0 { 0.0 } else { argument },
+                        true_anomaly_rad: nu,
+                    };
+                    let s: S = given.to_state();
+                    let found = Elements::from_state(GM, &s);
+                    assert!((found.periapsis_m / 7.0e6 - 1.0).abs() < 1e-13 && (found.eccentricity - e).abs() < 1e-13, "{given:?}");
+                    let back: S = found.to_state();
+                    assert!((back.position - s.position).length() < 1e-5, "{given:?} {found:?}");
+                    assert!((back.velocity.0 - s.velocity.0).length() < 1e-8, "{given:?} {found:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn times_agree_with_propagation() {
+        for e in [0.01, 0.6, 0.95, 0.999_999_9, 1.0, 1.000_000_1, 2.5] {
+            let given = Elements {
+                gm_m3_s2: GM,
+                periapsis_m: 7.0e6,
+                eccentricity: e,
+                inverse_semi_major_per_m: (1.0 - e) / 7.0e6,
+                inclination_rad: 0.4,
+                true_anomaly_rad: -1.2,
+                ..Elements::default()
+            };
+            let s: S = given.to_state();
+            let at_periapsis = propagate(GM, &s, given.to_periapsis_s());
+            assert!((at_periapsis.position.length() / 7.0e6 - 1.0).abs() < 1e-12, "e = {e}");
+            assert!(at_periapsis.position.0.dot(at_periapsis.velocity.0).abs() < 1e-4 * 7.0e6, "e = {e}");
+            if e < 0.99 {
+                let top = propagate(GM, &s, given.to_apoapsis_s());
+                assert!((top.position.length() / given.apoapsis_m() - 1.0).abs() < 1e-12, "e = {e}");
+            }
+            let nu = given.anomaly_at_radius(9.0e6);
+            if let Some(nu) = nu {
+                let out = propagate(GM, &s, given.since_periapsis_at(nu) - given.since_periapsis_s());
+                assert!((out.position.length() / 9.0e6 - 1.0).abs() < 1e-11, "e = {e}: {}", out.position.length());
+            } else {
+                assert!(e < 0.1, "e = {e} reaches 9,000 km");
+            }
+        }
+    }
+
+    #[test]
+    fn a_radial_path_and_nothing_at_all_are_told_without_nan() {
+        let up = S { position: Position::xyz(7.0e6, 0.0, 0.0), velocity: Velocity::xyz(100.0, 0.0, 0.0) };
+        let e = Elements::from_state(GM, &up);
+        assert!(e.periapsis_m == 0.0 && (e.eccentricity - 1.0).abs() < 1e-12 && e.is_bound());
+        for x in [e.apoapsis_m(), e.period_s(), e.to_periapsis_s(), e.to_apoapsis_s(), e.inclination_rad, e.argument_rad] {
+            assert!(x.is_finite(), "{e:?}");
+        }
+        assert_eq!(Elements::from_state(0.0, &up), Elements::default());
+        assert!(e.to_state::<Centred>().position.is_finite());
+    }
+
+    #[test]
+    fn mean_anomaly_goes_in_and_comes_out() {
+        for mean in [-2.0, 0.1, 3.0] {
+            let e = Elements::from_mean(GM, 9.0e6, 0.2, [0.3, 1.0, 2.0, mean]);
+            assert!((e.mean_anomaly_rad() - mean).abs() < 1e-13, "{}", e.mean_anomaly_rad());
+        }
     }
 }

@@ -457,3 +457,6 @@ fn check(orbits: &[Orbit]) -> Result<(), EphemerisError> {
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests;

@@ -182,8 +182,8 @@ mod tests {
     #[test]
     fn a_moon_is_met_at_the_same_tick_as_by_hand() {
         // Hohmann-like transfer to a moon on a circle, met far out.
-        let moon = arc([-3.8e8, 1.0e6, 0.0], [0.0, -1024.0, 0.0]);
-        let reach = Reach { nearest_m: 3.7e8, farthest_m: 4.1e8, fastest_m_s: 1.1e3 };
+        let moon = arc([-1.52e8, 3.48e8, 0.0], [-939.0, -408.6, 0.0]);
+        let reach = Reach { nearest_m: 3.6e8, farthest_m: 4.1e8, fastest_m_s: 1.1e3 };
         let ship = arc([6.77e6, 0.0, 0.0], [0.0, 10.765e3, 0.0]);
         let (from, until) = (SimTime::from_ticks(0), SimTime::from_ticks(60 * 86_400 * 12));
         let found = ship.first_within(6.6e7, &reach, |t| moon.sample(t).position, from, until).expect("met");

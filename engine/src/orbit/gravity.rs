@@ -52,7 +52,7 @@ mod tests {
     #[test]
     fn gravity_at_the_ground_is_gm_over_r_squared() {
         let a = point_mass(3.986_004_355_07e14, P::xyz(0.0, 6.371e6, 0.0));
-        assert!((a.0.y + 9.820_302).abs() < 1e-6 && a.0.x == 0.0, "{a:?}");
+        assert!((a.0.y + 9.820_250_33).abs() < 1e-6 && a.0.x == 0.0, "{a:?}");
         assert_eq!(point_mass(1.0, P::ZERO), Vector::ZERO);
     }
 
@@ -60,7 +60,7 @@ mod tests {
     fn tide_agrees_with_the_difference_where_that_is_exact_and_with_its_limit_where_it_is_not() {
         let (gm, moon) = (4.902_800_118e12, P::xyz(3.844e8, 0.0, 0.0));
         let far = P::xyz(1.0e8, 2.0e8, -3.0e7);
-        let plain = point_mass(gm, Position::new(far.0 - moon.0)).0 - point_mass(gm, Position::new(-moon.0)).0;
+        let plain = point_mass(gm, P::new(far.0 - moon.0)).0 - point_mass(gm, P::new(-moon.0)).0;
         assert!((tide(gm, moon, far).0 - plain).length() < 1e-14 * plain.length() * 10.0);
         // Near the origin the tide is linear: 2μx/d³ along the line to the body, −μy/d³ across it.
         let d3 = 3.844e8_f64 * 3.844e8 * 3.844e8;

@@ -235,3 +235,6 @@ impl Conic {
         (libm::log(swell.max(1.0)) / root.max(f64::MIN_POSITIVE)).copysign(dt)
     }
 }
+
+#[cfg(test)]
+mod tests;
