@@ -85,6 +85,14 @@ fn scenes(size: [u32; 2]) -> Vec<(&'static str, Snapshot)> {
     close.ships = vec![ship(Vec3::new(-16.0, 52.0, -19.0), attitude, 0.0, 1.0)];
     let mut burn = close.clone();
     burn.ships = vec![ship(Vec3::new(-16.0, 38.0, -14.0), Quat::from_rotation_z(0.6) * Quat::from_rotation_x(1.35), 1.0, 0.0)];
+    let mut portrait = close.clone();
+    portrait.camera.fov_y_rad = 0.42;
+    let nose_on = Quat::from_rotation_z(2.5) * Quat::from_rotation_x(1.35);
+    let mut front = portrait.clone();
+    front.ships = vec![ship(Vec3::new(-18.0, 40.0, -22.0), nose_on, 0.0, 1.0)];
+    portrait.camera.view_from_icrf = look_along(Vec3::new(-16.0, 38.0, -14.0), Vec3::Z);
+    front.camera.view_from_icrf = look_along(Vec3::new(-18.0, 40.0, -22.0), Vec3::Z);
+    portrait.ships = vec![ship(Vec3::new(-16.0, 38.0, -14.0), Quat::from_rotation_z(0.9) * Quat::from_rotation_x(1.35), 0.0, 1.0)];
     let night_sun = DVec3::new(0.0, 0.3, -0.95) * AU;
     let mut night = scene(size, Vec3::new(-0.4, 0.9, 0.2), Vec3::Z, vec![body(3, below, 6.371e6, blue, night_sun)], night_sun);
     night.ships = vec![ship(Vec3::new(-16.0, 52.0, 5.0), attitude, 0.3, 0.0)];
@@ -92,7 +100,17 @@ fn scenes(size: [u32; 2]) -> Vec<(&'static str, Snapshot)> {
     eclipse.bodies.push(body(4, sun / AU * 3.9e8, 1.7374e6, grey, sun));
     eclipse.bodies[0].occluders = vec![Occluder { id: 4, centre_m: eclipse.bodies[1].centre_m, radius_m: 1.7374e6 }];
     let sunlit = scene(size, to_sun, Vec3::Z, vec![body(3, below, 6.371e6, blue, sun)], sun);
-    vec![("far", far), ("jupiter", jupiter), ("ship", close), ("burn", burn), ("night", night), ("eclipse", eclipse), ("sun", sunlit)]
+    vec![
+        ("far", far),
+        ("jupiter", jupiter),
+        ("ship", close),
+        ("portrait", portrait),
+        ("front", front),
+        ("burn", burn),
+        ("night", night),
+        ("eclipse", eclipse),
+        ("sun", sunlit),
+    ]
 }
 
 fn main() -> Result<(), Box<dyn Error>> {

@@ -6,7 +6,7 @@
 struct Meter {
     range: vec4<f32>,  // log2 of the luminance of the first bin, bins per stop, compensation in stops, 0
     trim: vec4<f32>,   // share left out below, share up to which is counted, adaptation to light and to dark, 1/s
-    limit: vec4<f32>,  // lowest and highest EV at ISO 100, 0, 0
+    limit: vec4<f32>,  // lowest and highest EV at ISO 100; EV below which the star in view dazzles, 0
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;
@@ -61,6 +61,7 @@ fn settle() {
     if weight > 0.0 {
         ev = clamp(sum / weight + 3.0, meter.limit.x, meter.limit.y);
     }
+    ev = max(ev, meter.limit.z);
     if exposure.settled > 0.5 && frame.forward.w >= 0.0 {
         let now = log2(max(exposure.average, 1e-12)) + 3.0;
         let rate = select(meter.trim.w, meter.trim.z, ev > now);

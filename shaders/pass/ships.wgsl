@@ -43,6 +43,13 @@ fn vertex(
     return out;
 }
 
+// 1 on the inner side of a bell: its normal looks towards the axis of the nearest bell.
+fn inside_of_bell(p: vec3<f32>, n: vec3<f32>) -> f32 {
+    let x = select(0.0, 2.15 * sign(p.x), abs(p.x) > 1.2);
+    let y = select(0.15, -0.15, abs(p.x) > 1.2);
+    return step(dot(p.xy - vec2<f32>(x, y), n.xy), 0.0);
+}
+
 @fragment
 fn fragment(in: Varying) -> @location(0) vec4<f32> {
     let n = normalize(in.normal);
@@ -99,8 +106,8 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
     // What shines by itself: lamps, bells under power, the hull at entry.
     luminance += m.albedo * m.lamp;
     if in.material == 5u {
-        let inside = smoothstep(0.0, -1.0, in.hull_normal.z * 0.2 + dot(in.hull_normal.xy, in.hull.xy) * 0.2);
-        luminance += heat_glow(throttle * (0.35 + 0.4 * inside));
+        let inside = inside_of_bell(in.hull, in.hull_normal);
+        luminance = luminance * (1.0 - 0.8 * inside) + heat_glow(throttle * (0.35 + 0.4 * inside));
     }
     let windward = clamp(0.35 - in.hull_normal.y * 0.55 - in.hull_normal.z * 0.6, 0.0, 1.0);
     luminance += heat_glow(in.state.z * windward);

@@ -61,7 +61,8 @@ fn noise(pixel: vec2<f32>) -> f32 {
 fn fragment(in: Varying) -> @location(0) vec4<f32> {
     let sharp = textureLoad(lit, vec2<u32>(in.position.xy), 0).rgb;
     let spread = textureSampleLevel(glare, linear, in.uv, 0.0).rgb;
-    let hdr = mix(sharp, spread, glare_share) * (wanted.final_ / exposure.pre);
+    // The meter puts the mean at 1 / 9.6, the curve has its middle grey at 0.18.
+    let hdr = mix(sharp, spread, glare_share) * (wanted.final_ / exposure.pre * 9.6 * 0.18);
     let shift = f32(frame.counts.y % 64u) * 5.588238;
     let dither = noise(in.position.xy + shift) - 0.5;
     let encoded = srgb_encode(agx(hdr)) + dither / 255.0;

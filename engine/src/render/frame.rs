@@ -73,9 +73,13 @@ pub fn draw(
 /// disc, sky (which lays the air over `opaque` and its depth, into `aerial`). From the tables of the air to the finished light: the HDR texture that the picture is made of.
 fn light(f: &mut FrameContext<'_>, passes: &mut Passes) -> Result<wgpu::TextureView, RenderError> {
     f.clear_opaque();
+
     let skip = passes.air_tables.skip(f.scene);
     let air = if f.runs("air_tables", skip) { passes.air_tables.record(f) } else { passes.air_tables.values() };
-    let shadow = passes.no_shadow.clone();
+
+    let skip = passes.shadow.skip(f.scene);
+    let shadow = if f.runs("shadow", skip) { passes.shadow.record(f, &mut passes.ship_geometry) } else { passes.no_shadow.clone() };
+
     let light = f.shared.light_group(f.gpu, &air, &shadow);
 
     let skip = passes.smooth_body.skip(f.scene);

@@ -11,6 +11,8 @@ pub mod pipeline;
 pub mod report;
 pub mod shared;
 pub mod targets;
+#[cfg(test)]
+pub(crate) mod tests;
 
 pub use image::{HdrImage, OffscreenImage};
 pub use maps::{BodyMaps, ColourMap};

@@ -9,7 +9,7 @@ use crate::render::targets::HDR;
 use wgpu::{BindGroupEntry, BindingResource};
 
 /// Share of the light that is spread; the tone-mapping pass mixes it in.
-pub const SHARE: f32 = 0.035;
+pub const SHARE: f32 = 0.02;
 
 /// The pass.
 pub struct Bloom {
@@ -52,8 +52,8 @@ impl Bloom {
             self.draw(f, from, level, &self.down, None);
         }
         for i in (1..levels.len()).rev() {
-            // 0.6 to the wider level each time: level k keeps 0.4 · 0.6^k of the spread light.
-            self.draw(f, &levels[i], &levels[i - 1], &self.up, Some(0.6));
+            // Half to the wider level each time: level k keeps 2^−(k+1) of the spread light.
+            self.draw(f, &levels[i], &levels[i - 1], &self.up, Some(0.5));
         }
         levels[0].clone()
     }

@@ -2,15 +2,33 @@
 
 use crate::gpu::buffer::Uniform;
 use crate::gpu::{Gpu, ShaderLibrary};
+use crate::light::occlusion::{Disc, visible};
 use crate::render::RenderError;
+use crate::render::pass::sun_disc;
 use crate::render::pipeline::{compute_pipeline, texture_entry, uniform_entry};
 use crate::render::shared::{FrameContext, Shared};
 use crate::scene::gpu_data::MeterUniform;
-use crate::scene::{AutoOr, Snapshot};
+use crate::scene::{AutoOr, Body, Snapshot};
+use crate::space::relative::narrow;
+use glam::Vec3;
 use wgpu::{BindGroupEntry, BufferUsages, ShaderStages};
 
 /// Bins of the histogram.
 const BINS: u64 = 256;
+
+/// Illuminance of the star at the camera, where it is in view and not hidden by a body, lx.
+fn glare_lx(scene: &Snapshot) -> f32 {
+    if sun_disc::out_of_view(scene) {
+        return 0.0;
+    }
+    let star = &scene.star;
+    let sun = Disc::of_sphere(star.centre_m.as_dvec3(), f64::from(star.radius_m));
+    let before = |b: &&Body| b.centre_m.length_squared() < star.centre_m.length_squared();
+    let discs: Vec<Disc> =
+        scene.bodies.iter().filter(before).map(|b| Disc::of_sphere(b.centre_m.as_dvec3(), f64::from(b.radius_m))).collect();
+    let free = narrow(visible(sun, &discs));
+    free * star.intensity_cd.dot(Vec3::new(0.2126, 0.7152, 0.0722)) / star.centre_m.length_squared().max(1.0)
+}
 
 /// The pass.
 pub struct Exposure {
@@ -66,7 +84,7 @@ impl Exposure {
     /// Measures `lit` and writes the exposure of the next frame.
     pub fn record(&self, f: &mut FrameContext<'_>, lit: &wgpu::TextureView) {
         let AutoOr::Auto { compensation_ev } = f.scene.exposure else { return };
-        self.meter.write(&f.gpu.queue, &MeterUniform::new(compensation_ev));
+        self.meter.write(&f.gpu.queue, &MeterUniform::new(compensation_ev, glare_lx(f.scene)));
         let group = f.gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("exposure"),
             layout: &self.layout,

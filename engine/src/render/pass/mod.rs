@@ -5,6 +5,7 @@
 pub mod air_tables;
 pub mod bloom;
 pub mod exposure;
+pub mod shadow;
 pub mod ship_mesh;
 pub mod ships;
 pub mod sky;
@@ -28,6 +29,8 @@ pub struct Passes {
     pub no_shadow: ShadowMap,
     /// Spheres without terrain.
     pub smooth_body: smooth_body::SmoothBody,
+    /// The ship's shadow.
+    pub shadow: shadow::ShipShadow,
     /// Hulls and flames.
     pub ships: ships::Ships,
     /// Where this frame's ships are.
@@ -53,6 +56,7 @@ impl Passes {
             air_tables: air_tables::AirBaker::new(gpu, shaders)?,
             no_shadow: ShadowMap::none(gpu),
             smooth_body: smooth_body::SmoothBody::new(gpu, shaders, shared, maps)?,
+            shadow: shadow::ShipShadow::new(gpu, shaders, shared)?,
             ships: ships::Ships::new(gpu, shaders, shared)?,
             ship_geometry: ships::ShipGeometry::new(gpu),
             stars: stars::Stars::new(gpu, shaders, shared)?,

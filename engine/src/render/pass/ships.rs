@@ -18,6 +18,7 @@ pub struct ShipGeometry {
     vertices: List<HullVertex>,
     indices: List<u32>,
     instances: List<ShipInstance>,
+    caster: List<ShipInstance>,
 }
 
 impl ShipGeometry {
@@ -28,7 +29,8 @@ impl ShipGeometry {
         let mut indices = List::new(&gpu.device, "hull indices", BufferUsages::INDEX, mesh.indices.len());
         vertices.write(&gpu.device, &gpu.queue, &mesh.vertices);
         indices.write(&gpu.device, &gpu.queue, &mesh.indices);
-        Self { vertices, indices, instances: List::new(&gpu.device, "ships", BufferUsages::VERTEX, 4) }
+        let list = |label, n| List::new(&gpu.device, label, BufferUsages::VERTEX, n);
+        Self { vertices, indices, instances: list("ships", 4), caster: list("shadow caster", 1) }
     }
 
     /// Places this frame's ships; how many there are.
@@ -40,8 +42,22 @@ impl ShipGeometry {
 
     /// Draws the first `count` ships.
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, count: u32) {
+        self.draw_from(pass, &self.instances, count);
+    }
+
+    /// Places the ship that throws a shadow (it need not be visible: the camera may sit in it).
+    pub fn place_caster(&mut self, gpu: &Gpu, ship: &Ship) {
+        self.caster.write(&gpu.device, &gpu.queue, &[ShipInstance::new(ship)]);
+    }
+
+    /// Draws the ship that throws a shadow.
+    pub fn draw_caster(&self, pass: &mut wgpu::RenderPass<'_>) {
+        self.draw_from(pass, &self.caster, 1);
+    }
+
+    fn draw_from(&self, pass: &mut wgpu::RenderPass<'_>, instances: &List<ShipInstance>, count: u32) {
         pass.set_vertex_buffer(0, self.vertices.buffer.slice(..));
-        pass.set_vertex_buffer(1, self.instances.buffer.slice(..));
+        pass.set_vertex_buffer(1, instances.buffer.slice(..));
         pass.set_index_buffer(self.indices.buffer.slice(..), wgpu::IndexFormat::Uint32);
         pass.draw_indexed(0..u32::try_from(self.indices.len()).unwrap_or(0), 0, 0..count);
     }
