@@ -18,7 +18,9 @@ use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// Substeps of a tick while something can touch.
-const SUBSTEPS: usize = 8;
+const SUBSTEPS: u8 = 8;
+/// Substeps of a tick with the gear up.
+const SUBSTEPS_BELLY: u8 = 2;
 /// Above this speed no contact is gentle: the ship is swept against the height function, and a touch is an impact.
 pub const FAST_M_S: f64 = 60.0;
 /// At rest: slower than this, m/s …
@@ -134,7 +136,7 @@ impl Bubble {
         let key = PatchKey::for_ship(contact.key, surface.radius_m(), direction);
         let patch = match self.patch.take() {
             Some(p) if p.key == key => p,
-            _ => Arc::new(Patch::build(surface, key, reach)?),
+            old => Arc::new(Patch::build(surface, key, reach, old.as_deref())?),
         };
         let above = radius - span > patch.top_radius_m;
         self.patch = Some(patch);
@@ -218,11 +220,14 @@ fn normal(surface: &dyn Surface, at: DVec3) -> DVec3 {
 
 /// A tick near the ground at a gentle speed.
 fn touchable(contact: &mut Contact, state: &mut BodyState, ship: &Ship, place: &Place, patch: &Patch, dt_s: f64) -> Report {
-    let h = dt_s / SUBSTEPS as f64;
+    // Legs are stiff; without them rapier's own iterations are fine enough.
+    let substeps = if ship.gear_down { SUBSTEPS } else { SUBSTEPS_BELLY };
+    let h = dt_s / f64::from(substeps);
+    let hull_near = hull_near(state, ship.chassis, patch, dt_s);
     let mut report = Report::default();
     let mut impulse = DVec3::ZERO;
     let mut feet = 0;
-    for _ in 0..SUBSTEPS {
+    for _ in 0..substeps {
         let legs = if ship.gear_down {
             gear::act(&ship.chassis.legs, &mut contact.legs, state, patch, ship.mass.mass_kg, h)
         } else {
@@ -236,7 +241,7 @@ fn touchable(contact: &mut Contact, state: &mut BodyState, ship: &Ship, place: &
                 report.crash_m_s = Some(normal);
             }
         }
-        let dv = drift_or_knock(state, ship, place, patch, &legs, h, &mut report);
+        let dv = drift_or_knock(state, ship, place, hull_near.then_some(patch), &legs, h, &mut report);
         impulse += dv;
         report.touching |= feet > 0;
         if report.crash_m_s.is_some() {
@@ -255,24 +260,37 @@ fn touchable(contact: &mut Contact, state: &mut BodyState, ship: &Ship, place: &
     report
 }
 
+/// Could the hull touch within the tick? Looks at 30 points of the hull's box, with a margin for bumps between them.
+fn hull_near(state: &BodyState, chassis: &Chassis, patch: &Patch, dt_s: f64) -> bool {
+    let margin = 0.3 + 1.5 * dt_s * (state.velocity.length() + state.angular.length() * chassis.reach_m());
+    for y in [-1.0, 1.0] {
+        for x in [-1.0, 0.0, 1.0] {
+            for z in [-1.0, -0.5, 0.0, 0.5, 1.0] {
+                let corner = chassis.middle_m + chassis.half_size_m * DVec3::new(x, y, z);
+                let clearance = patch.clearance_m(state.position.0 + state.fixed_from_hull.raw(corner));
+                if clearance.is_none_or(|c| c < margin) {
+                    return true;
+                }
+            }
+        }
+    }
+    false
+}
+
 /// One substep with the legs' forces and the hull's contact; gives the velocity that the ground added, m/s.
 fn drift_or_knock(
     state: &mut BodyState,
     ship: &Ship,
     place: &Place,
-    patch: &Patch,
+    near: Option<&Patch>,
     legs: &LegForces,
     h: f64,
     report: &mut Report,
 ) -> DVec3 {
     let before = *state;
     drift(state, ship, place, legs.force_n, legs.torque_n_m, legs.feet > 0, h);
-    let hull_reach = (ship.chassis.middle_m.abs() + ship.chassis.half_size_m).length();
-    let lowest = state.position.length() - hull_reach;
     let added = legs.force_n * (h / ship.mass.mass_kg);
-    if lowest > patch.top_radius_m {
-        return added;
-    }
+    let Some(patch) = near else { return added };
     // rapier starts from the old pose with the new velocity, as its own step would.
     let trial = BodyState { velocity: state.velocity, angular: state.angular, ..before };
     let Some(k) = hull::knock(patch, ship.chassis, &ship.mass, &trial, h) else { return added };

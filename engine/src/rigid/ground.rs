@@ -8,12 +8,16 @@
 use super::RigidError;
 use crate::space::{Anchor, Fixed, Position, Rotation, relative, sphere};
 use crate::terrain::Relief;
-use glam::{DMat3, DVec3, Vec3};
-use rapier3d::geometry::{Ray, SharedShape, TriMeshFlags};
+use glam::{DMat3, DVec3};
+use rapier3d::geometry::{Ray, SharedShape};
 use serde::{Deserialize, Serialize};
 
-/// The finest cells are at least this wide, m.
-const CELL_M: f64 = 0.75;
+/// Cells are at most this wide, m, as those of the finest tiles drawn are …
+const CELL_M: f64 = 1.0;
+/// … unless a face would need more cells along its edge than this.
+const CELLS_MOST: f64 = 67_108_864.0;
+/// The ship may be this many cells off a patch's middle.
+const STRIDE: f64 = 8.0;
 
 /// The surface of a body: what one stands or splashes on.
 pub trait Surface {
@@ -46,7 +50,8 @@ pub struct PatchKey {
     pub middle: [i32; 2],
 }
 
-/// The lattice of a body: `2^level` cells along a face's edge, so that a cell is 0.75 … 1.5 m wide at the face's middle.
+/// The lattice of a body: `32 · 2^level` cells along a face's edge, so that a cell is 0.5 … 1 m wide at the face's middle; its
+/// vertices are those of the finest tiles drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Lattice {
     half_cells: f64,
@@ -56,11 +61,11 @@ struct Lattice {
 impl Lattice {
     fn of(radius_m: f64) -> Self {
         let edge_m = core::f64::consts::FRAC_PI_2 * radius_m;
-        let mut half_cells = 4.0;
-        while edge_m / (4.0 * half_cells) >= CELL_M && half_cells < 536_870_912.0 {
-            half_cells *= 2.0;
+        let mut cells = 32.0;
+        while edge_m / cells > CELL_M && cells < CELLS_MOST {
+            cells *= 2.0;
         }
-        Self { half_cells, cell_m: edge_m / (2.0 * half_cells) }
+        Self { half_cells: 0.5 * cells, cell_m: edge_m / cells }
     }
     fn locate(self, direction: DVec3) -> (u8, f64, f64) {
         let (face, u, v) = sphere::face_of(direction);
@@ -72,7 +77,6 @@ impl PatchKey {
     /// Keeps `held` while the ship is near its middle, else gives the patch centred nearest to it.
     #[allow(clippy::cast_possible_truncation)]
     pub fn for_ship(held: Option<Self>, radius_m: f64, direction: DVec3) -> Self {
-        const STRIDE: f64 = 8.0;
         let (face, i, j) = Lattice::of(radius_m).locate(direction);
         if let Some(k) = held
             && k.face == face
@@ -106,7 +110,13 @@ pub struct Patch {
     pub fixed_from_anchor: Rotation<Fixed, Anchor>,
     /// Highest vertex, as a distance from the body's centre, m.
     pub top_radius_m: f64,
-    pub(super) shape: SharedShape,
+    lattice: Lattice,
+    radius_m: f64,
+    half: i32,
+    heights_m: Vec<f64>,
+    shape: SharedShape,
+    /// Every second vertex: what the hull feels, which is large and would meet a thousand triangles.
+    pub(super) coarse: SharedShape,
 }
 
 impl core::fmt::Debug for Patch {
@@ -117,14 +127,19 @@ impl core::fmt::Debug for Patch {
 
 impl Patch {
     /// Builds the patch of `key`, wide enough that a ship of bounding radius `reach_m` stays over it while the key is held.
-    pub fn build(surface: &dyn Surface, key: PatchKey, reach_m: f64) -> Result<Self, RigidError> {
-        let lattice = Lattice::of(surface.radius_m());
+    /// Heights that `old` has are taken from it; they are the same bits.
+    pub fn build(surface: &dyn Surface, key: PatchKey, reach_m: f64, old: Option<&Self>) -> Result<Self, RigidError> {
+        let radius_m = surface.radius_m();
+        let lattice = Lattice::of(radius_m);
         let half = half_cells(reach_m, lattice.cell_m);
-        let point = |di: i32, dj: i32| {
-            let u = f64::from(key.middle[0] + di) / lattice.half_cells;
-            let v = f64::from(key.middle[1] + dj) / lattice.half_cells;
-            let d = sphere::direction_of(key.face.min(5), u, v);
-            d * (surface.radius_m() + surface.surface_m(d))
+        let old = old.filter(|o| o.key.face == key.face);
+        let mut heights_m = Vec::new();
+        let mut point = |di: i32, dj: i32| {
+            let (i, j) = (key.middle[0].saturating_add(di), key.middle[1].saturating_add(dj));
+            let d = sphere::direction_of(key.face.min(5), f64::from(i) / lattice.half_cells, f64::from(j) / lattice.half_cells);
+            let height = old.and_then(|o| o.height_at(i, j)).unwrap_or_else(|| surface.surface_m(d));
+            heights_m.push(height);
+            d * (radius_m + height)
         };
         let origin = point(0, 0);
         let (east, up, north) = sphere::east_up_north(origin.normalize_or(DVec3::Z));
@@ -132,29 +147,47 @@ impl Patch {
         let anchor_from_fixed = fixed_from_anchor.inverse();
         let side = 2 * half + 1;
         let mut vertices = Vec::new();
-        let mut top_radius_m: f64 = 0.0;
         for dj in -half..=half {
             for di in -half..=half {
-                let p = point(di, dj);
-                top_radius_m = top_radius_m.max(p.length());
-                vertices.push(relative::narrow3(anchor_from_fixed.raw(p - origin)));
+                vertices.push(relative::narrow3(anchor_from_fixed.raw(point(di, dj) - origin)));
             }
         }
-        let mut indices = Vec::new();
-        let at = |i: i32, j: i32| u32::try_from(j * side + i).unwrap_or(0);
-        for j in 0..side - 1 {
-            for i in 0..side - 1 {
-                // u × v points out of the body, so these wind upwards.
-                indices.push([at(i, j), at(i + 1, j), at(i + 1, j + 1)]);
-                indices.push([at(i, j), at(i + 1, j + 1), at(i, j + 1)]);
-            }
-        }
-        if !vertices.iter().all(|v: &Vec3| v.is_finite()) {
+        // The first sample was the origin's.
+        heights_m.remove(0);
+        if !vertices.iter().all(|v| v.is_finite()) {
             return Err(RigidError::Ground { key, why: "a height is not finite".into() });
         }
-        let shape = SharedShape::trimesh_with_flags(vertices, indices, TriMeshFlags::FIX_INTERNAL_EDGES)
-            .map_err(|e| RigidError::Ground { key, why: e.to_string() })?;
-        Ok(Self { key, origin: Position::new(origin), fixed_from_anchor, top_radius_m, shape })
+        let top_radius_m = radius_m + heights_m.iter().fold(f64::NEG_INFINITY, |a, b| a.max(*b));
+        let mesh = |every: i32| {
+            SharedShape::trimesh(vertices.clone(), triangles(side, every)).map_err(|e| RigidError::Ground { key, why: e.to_string() })
+        };
+        let (shape, coarse) = (mesh(1)?, mesh(2)?);
+        Ok(Self { key, origin: Position::new(origin), fixed_from_anchor, top_radius_m, lattice, radius_m, half, heights_m, shape, coarse })
+    }
+
+    /// Height of a vertex of the lattice, m, if it lies on this patch.
+    fn height_at(&self, i: i32, j: i32) -> Option<f64> {
+        let (di, dj) = (i.checked_sub(self.key.middle[0])?, j.checked_sub(self.key.middle[1])?);
+        if di.abs() > self.half || dj.abs() > self.half {
+            return None;
+        }
+        let index = (dj + self.half) * (2 * self.half + 1) + di + self.half;
+        self.heights_m.get(usize::try_from(index).ok()?).copied()
+    }
+
+    /// Distance of a point (Fixed axes, m) from the mesh along the vertical, to a hand's breadth (bilinear in the cell); none
+    /// off the patch.
+    #[allow(clippy::cast_possible_truncation)]
+    pub fn clearance_m(&self, p: DVec3) -> Option<f64> {
+        let (face, u, v) = self.lattice.locate(p);
+        if face != self.key.face {
+            return None;
+        }
+        let (i, j) = (u.floor() as i32, v.floor() as i32);
+        let (fu, fv) = (u - u.floor(), v - v.floor());
+        let row = |j: i32| Some(self.height_at(i, j)? * (1.0 - fu) + self.height_at(i.checked_add(1)?, j)? * fu);
+        let height = row(j)? * (1.0 - fv) + row(j.checked_add(1)?)? * fv;
+        Some(p.length() - self.radius_m - height)
     }
 
     /// Casts a ray from a point (Fixed, m) along a unit direction, up to `reach_m`.
@@ -168,10 +201,27 @@ impl Patch {
     }
 }
 
-/// Cells from the middle to the edge: the ship may be 8 cells off the middle, and cells shrink to 0.7 towards a cube's edge.
+/// Triangles over a square of `side × side` vertices, using every `every`th, wound upwards (u × v points out of the body).
+fn triangles(side: i32, every: i32) -> Vec<[u32; 3]> {
+    let at = |i: i32, j: i32| u32::try_from(j * side + i).unwrap_or(0);
+    let steps = (side - 1) / every;
+    let mut out = Vec::new();
+    for j in (0..steps).map(|j| j * every) {
+        for i in (0..steps).map(|i| i * every) {
+            let (k, l) = (i + every, j + every);
+            out.push([at(i, j), at(k, j), at(k, l)]);
+            out.push([at(i, j), at(k, l), at(i, l)]);
+        }
+    }
+    out
+}
+
+/// Cells from the middle to the edge: the ship may be a stride off the middle, and cells shrink to 0.7 towards a cube's edge.
 #[allow(clippy::cast_possible_truncation)]
 fn half_cells(reach_m: f64, cell_m: f64) -> i32 {
-    8 + ((reach_m.clamp(1.0, 60.0) + 2.0) / (0.66 * cell_m)).ceil() as i32
+    let cells = STRIDE as i32 + ((reach_m.clamp(1.0, 60.0) + 2.0) / (0.66 * cell_m)).ceil() as i32;
+    // Even, so that every second vertex is the same one on every patch.
+    cells + cells % 2
 }
 
 #[cfg(test)]
@@ -184,10 +234,13 @@ mod tests {
         let hills = Hills::earth();
         for (lat, lon) in [(0.1, 0.2), (1.2, -2.0), (-0.6, 3.0), (1.570_7, 0.3)] {
             let d = sphere::direction_of_lat_lon(lat, lon);
-            let patch = Patch::build(&hills, PatchKey::for_ship(None, hills.radius_m(), d), 12.0).unwrap();
+            let patch = Patch::build(&hills, PatchKey::for_ship(None, hills.radius_m(), d), 12.0, None).unwrap();
             let ground = hills.radius_m() + hills.surface_m(d);
             let hit = patch.cast(Position::new(d * (ground + 20.0)), -d, 100.0).unwrap();
             assert!((hit.distance_m - 20.0).abs() < 5e-3, "{}", hit.distance_m);
+            let clearance = patch.clearance_m(d * (ground + 20.0)).unwrap();
+            assert!((clearance - 20.0).abs() < 5e-3, "{clearance}");
+            assert!(patch.clearance_m((d + DVec3::new(1e-4, -2e-4, 1e-4)) * ground).is_none());
             assert!(hit.normal.dot(d) > 0.8);
         }
     }
@@ -198,7 +251,10 @@ mod tests {
         let d = sphere::direction_of_lat_lon(0.7, 0.4);
         let a = PatchKey::for_ship(None, hills.radius_m(), d);
         let b = PatchKey { face: a.face, middle: [a.middle[0] + 8, a.middle[1] - 8] };
-        let (a, b) = (Patch::build(&hills, a, 12.0).unwrap(), Patch::build(&hills, b, 12.0).unwrap());
+        let a = Patch::build(&hills, a, 12.0, None).unwrap();
+        let fresh = Patch::build(&hills, b, 12.0, None).unwrap();
+        let b = Patch::build(&hills, b, 12.0, Some(&a)).unwrap();
+        assert_eq!(fresh.heights_m, b.heights_m, "heights taken over are those that would have been computed");
         let top = hills.radius_m() + hills.surface_m(d) + 5.0;
         for k in 0..20 {
             let at = (d + DVec3::new(0.0, 1e-8, -1.3e-8) * f64::from(k)).normalize();
@@ -212,7 +268,7 @@ mod tests {
     fn a_body_of_any_size_has_metre_cells() {
         for radius in [50.0, 5e3, 6.371e6, 7.1e7] {
             let l = Lattice::of(radius);
-            assert!(l.cell_m < 10.0 && (l.cell_m >= 0.75 || radius < 100.0), "{radius}: {}", l.cell_m);
+            assert!(l.cell_m < 2.0 && (l.cell_m > 0.5 || radius < 100.0), "{radius}: {}", l.cell_m);
         }
     }
 }

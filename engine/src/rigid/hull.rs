@@ -40,7 +40,8 @@ pub(super) fn knock(patch: &Patch, chassis: &Chassis, mass: &MassProps, state: &
     p.max_ccd_substeps = 0;
 
     let ground_at = Pose::from_parts(narrow3(to.raw((patch.origin - state.position).0)), glam::Quat::IDENTITY);
-    world.insert_collider(ColliderBuilder::new(patch.shape.clone()).position(ground_at).friction(narrow(chassis.friction)), None);
+    let ground = ColliderBuilder::new(patch.coarse.clone()).density(0.0).position(ground_at).friction(narrow(chassis.friction));
+    world.insert_collider(ground, None);
     let inertia = narrow3(mass.inertia_kg_m2.max(DVec3::splat(1.0)));
     let attitude = rotation(to * state.fixed_from_hull);
     let (v0, w0) = (narrow3(to.raw(state.velocity.0)), narrow3(to.raw(state.angular.0)));

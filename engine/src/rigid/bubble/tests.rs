@@ -189,7 +189,7 @@ fn a_thousand_anchors_move_nothing() {
         let ship = Ship { chassis: &rig.chassis, mass: MASS, loads: rig.loads, gear_down: true, flown: true };
         let place = Place { surface: &rig.ground, frame: SPIN, gravity: &pull };
         for _ in 0..SUBSTEPS {
-            drift(&mut reference, &ship, &place, DVec3::ZERO, DVec3::ZERO, false, TICK_S / SUBSTEPS as f64);
+            drift(&mut reference, &ship, &place, DVec3::ZERO, DVec3::ZERO, false, TICK_S / f64::from(SUBSTEPS));
         }
         assert!(!rig.tick().touching);
         if rig.contact.key != key {
@@ -305,4 +305,36 @@ fn wakes_and_leaves_by_thrust() {
         assert!(!rig.tick().at_rest);
     }
     assert!(rig.state.position.length() - rig.ground.radius_m > 200.0 && !rig.bubble.has_ground());
+}
+
+#[test]
+#[ignore = "prints run times"]
+fn costs() {
+    let time = |name: &str, n: u32, f: &mut dyn FnMut()| {
+        let start = std::time::Instant::now();
+        for _ in 0..n {
+            f();
+        }
+        println!("{name}: {:.1} µs", start.elapsed().as_secs_f64() * 1e6 / f64::from(n));
+    };
+    let hills = Hills::earth();
+    let key = PatchKey::for_ship(None, hills.radius_m, hills.about);
+    let patch = Patch::build(&hills, key, 9.5, None).unwrap();
+    time("patch", 20, &mut || drop(Patch::build(&hills, key, 9.5, None)));
+    time("patch, shifted", 20, &mut || {
+        let key = PatchKey { face: key.face, middle: [key.middle[0] + 8, key.middle[1]] };
+        drop(Patch::build(&hills, key, 9.5, Some(&patch)));
+    });
+    let mut rig = Rig::new(Hills::slope(10.0, DVec3::X), 5.0);
+    for _ in 0..300 {
+        rig.tick();
+    }
+    time("tick on its feet", 600, &mut || {
+        rig.tick();
+    });
+    let mut rig = Rig::new(Hills { amplitude_m: 0.0, ..Hills::earth() }, 2.05);
+    rig.gear_down = false;
+    time("tick on its belly", 600, &mut || {
+        rig.tick();
+    });
 }
