@@ -10,6 +10,7 @@ use crate::space::{Anchor, Fixed, Position, Rotation, relative, sphere};
 use crate::terrain::Relief;
 use glam::{DMat3, DVec3};
 use rapier3d::geometry::{Ray, SharedShape};
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 /// Cells are at most this wide, m, as those of the finest tiles drawn are …
@@ -20,7 +21,7 @@ const CELLS_MOST: f64 = 67_108_864.0;
 const STRIDE: f64 = 8.0;
 
 /// The surface of a body: what one stands or splashes on.
-pub trait Surface {
+pub trait Surface: Sync {
     /// Radius of the datum sphere, m.
     fn radius_m(&self) -> f64;
     /// Height of the surface above the datum, m, in a unit direction of [`Fixed`] axes.
@@ -133,27 +134,27 @@ impl Patch {
         let lattice = Lattice::of(radius_m);
         let half = half_cells(reach_m, lattice.cell_m);
         let old = old.filter(|o| o.key.face == key.face);
-        let mut heights_m = Vec::new();
-        let mut point = |di: i32, dj: i32| {
-            let (i, j) = (key.middle[0].saturating_add(di), key.middle[1].saturating_add(dj));
-            let d = sphere::direction_of(key.face.min(5), f64::from(i) / lattice.half_cells, f64::from(j) / lattice.half_cells);
-            let height = old.and_then(|o| o.height_at(i, j)).unwrap_or_else(|| surface.surface_m(d));
-            heights_m.push(height);
-            d * (radius_m + height)
+        let side = 2 * half + 1;
+        let direction = |di: i32, dj: i32| {
+            let at = |m: i32, d: i32| f64::from(m.saturating_add(d)) / lattice.half_cells;
+            sphere::direction_of(key.face.min(5), at(key.middle[0], di), at(key.middle[1], dj))
         };
-        let origin = point(0, 0);
+        let sample = |k: i32| {
+            let (di, dj) = (k % side - half, k / side - half);
+            let known = old.and_then(|o| o.height_at(key.middle[0].saturating_add(di), key.middle[1].saturating_add(dj)));
+            known.unwrap_or_else(|| surface.surface_m(direction(di, dj)))
+        };
+        // In parallel, but each height is a function of its place alone.
+        let heights_m: Vec<f64> = (0..side * side).into_par_iter().map(sample).collect();
+        let origin = direction(0, 0) * (radius_m + surface.surface_m(direction(0, 0)));
         let (east, up, north) = sphere::east_up_north(origin.normalize_or(DVec3::Z));
         let fixed_from_anchor = Rotation::from_columns(DMat3::from_cols(east, up, -north));
         let anchor_from_fixed = fixed_from_anchor.inverse();
-        let side = 2 * half + 1;
-        let mut vertices = Vec::new();
-        for dj in -half..=half {
-            for di in -half..=half {
-                vertices.push(relative::narrow3(anchor_from_fixed.raw(point(di, dj) - origin)));
-            }
-        }
-        // The first sample was the origin's.
-        heights_m.remove(0);
+        let vertex = |(k, height): (i32, &f64)| {
+            let p = direction(k % side - half, k / side - half) * (radius_m + height);
+            relative::narrow3(anchor_from_fixed.raw(p - origin))
+        };
+        let vertices: Vec<_> = (0..).zip(&heights_m).map(vertex).collect();
         if !vertices.iter().all(|v| v.is_finite()) {
             return Err(RigidError::Ground { key, why: "a height is not finite".into() });
         }

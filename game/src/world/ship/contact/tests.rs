@@ -15,7 +15,7 @@ use std::sync::Arc;
 
 fn rock(ground: bool) -> Arc<System> {
     let radius_m = 6.371e6;
-    let relief = Relief { radius_m, has_water: false };
+    let relief = Relief::smooth(radius_m, false);
     let body = Body {
         key: "rock".into(),
         name: "Rock".into(),
