@@ -16,8 +16,7 @@ use std::path::PathBuf;
 const SUN_CD: Vec3 = Vec3::new(2.90e27, 2.86e27, 2.80e27);
 const RADIUS: f64 = 6371.0 * KM;
 
-/// Coefficients are means over the linear sRGB channels: Rayleigh's λ⁻⁴ and ozone's Chappuis band, weighted by the CIE 1931 matching
-/// functions taken to sRGB; so ozone takes most of the red, and twilight is blue.
+/// As `assets/systems/sol/earth/body.toml` describes it.
 fn earth_air() -> Medium {
     let exponential = |scale_height_m| Profile::Exponential { scale_height_m };
     Medium {
@@ -26,7 +25,7 @@ fn earth_air() -> Medium {
         ground_albedo: Vec3::splat(0.15),
         layers: vec![
             Layer {
-                scattering_per_m: Vec3::new(7.2e-6, 13.6e-6, 32.1e-6),
+                scattering_per_m: Vec3::new(6.5e-6, 13.6e-6, 32.5e-6),
                 absorption_per_m: Vec3::ZERO,
                 profile: exponential(8000.0),
                 phase: Phase::Rayleigh,
@@ -39,7 +38,7 @@ fn earth_air() -> Medium {
             },
             Layer {
                 scattering_per_m: Vec3::ZERO,
-                absorption_per_m: Vec3::new(2.65e-6, 1.64e-6, 0.17e-6),
+                absorption_per_m: Vec3::new(1.6e-6, 1.8e-6, 0.12e-6),
                 profile: Profile::Tent { bottom_m: 1.0e4, peak_m: 2.5e4, top_m: 4.0e4 },
                 phase: Phase::Rayleigh,
             },
@@ -116,7 +115,7 @@ fn scenes(size: [u32; 2]) -> Vec<(&'static str, Snapshot)> {
         ("backlit", scene(size, 6.0e7, -82.0, 0.0, -90.0, 16.0)),
         ("umbra_2m", eclipsed(scene(size, 2.0, 26.0, 20.0, 15.0, 75.0), 0.0)),
         ("umbra_limb", eclipsed(scene(size, 2.0, 26.0, 20.0, 15.0, 75.0), 1.2e5)),
-        ("umbra_space", eclipsed(scene(size, 2.0e6, 40.0, 60.0, -60.0, 75.0), 0.0)),
+        ("umbra_space", eclipsed(scene(size, 2.0e6, 55.0, 180.0, -65.0, 60.0), 0.0)),
     ]
 }
 

@@ -3,7 +3,7 @@
 // The tables are 2-D arrays, a layer per slot (Body.ids.z; −1: no air, ask nothing). Bind from group 1: @binding(0) var<uniform>
 // airs: Airs; @binding(1) transmittance, @binding(2) multiple, @binding(3) irradiance: texture_2d_array<f32>; @binding(4) sampler.
 // Altitudes are above the datum in m and may be negative; `mu_s` is the cosine of the sun's zenith angle at the point.
-// Made by engine/src/render/pass/air_tables.rs. Not here: light along a ray of sight (lib/air_march.wgsl).
+// Made by engine/src/render/pass/air_tables.rs. Not here: light along a ray of sight (lib/air_march.wgsl); all of it together for a surface (lib/daylight.wgsl).
 
 #include "lib/air_path.wgsl"
 
@@ -72,14 +72,4 @@ fn air_multiple(air: Air, table: texture_2d_array<f32>, linear: sampler, slot: i
 fn air_sky_irradiance(air: Air, table: texture_2d_array<f32>, linear: sampler, slot: i32, altitude: f32, mu_s: f32) -> vec3<f32> {
     let root = textureSampleLevel(table, linear, table_uv(lit_x(air, altitude, mu_s), IRRADIANCE_SIZE), slot, 0.0).rgb;
     return root * root;
-}
-
-// Angle of the sun's centre above the horizon of the datum, rad: exact near zero, then rising more slowly, right in sign.
-fn air_sun_elevation(air: Air, altitude: f32, mu_s: f32) -> f32 {
-    let bottom = air.shape.x;
-    let h = max(altitude, 0.0);
-    let sine_dip = sqrt(h * (2.0 * bottom + h)) / (bottom + h);
-    let c = clamp(mu_s, -1.0, 1.0);
-    let sine = c * (bottom / (bottom + h)) + sqrt(1.0 - c * c) * sine_dip;
-    return sine * (1.0 + sine * sine / 6.0);
 }

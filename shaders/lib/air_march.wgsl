@@ -32,7 +32,7 @@ fn air_march(
     var out = AirLight(vec3<f32>(0.0), vec3<f32>(1.0));
     var from_s = 0.0;
     var from_density = air_density(air, path.altitude);
-    var from_sun = air_sun_elevation(air, path.altitude, up_sun / path.radius);
+    var from_sun = sun_elevation(air.shape.x, path.altitude, up_sun / path.radius);
     for (var i = 1u; i <= count; i++) {
         let to_s = air_step(steps, f32(i) / f32(count));
         let s = 0.5 * (from_s + to_s);
@@ -40,7 +40,7 @@ fn air_march(
         let mu_s = (up_sun + s * ray_sun) / (air.shape.x + altitude);
         let to_altitude = air_altitude(air, path, to_s);
         let to_density = air_density(air, to_altitude);
-        let to_sun = air_sun_elevation(air, to_altitude, (up_sun + to_s * ray_sun) / (air.shape.x + to_altitude));
+        let to_sun = sun_elevation(air.shape.x, to_altitude, (up_sun + to_s * ray_sun) / (air.shape.x + to_altitude));
         let density = (from_density + 4.0 * air_density(air, altitude) + to_density) / 6.0;
 
         var eclipse = Eclipse(1.0, 1.0);

@@ -58,3 +58,21 @@ fn eclipse_visible(body: Body, star: vec4<f32>, point: vec3<f32>) -> f32 {
     }
     return eclipse_at(body, star, point, 0.0).direct;
 }
+
+// Altitude above the datum of a point given from the camera: from the camera's own altitude, without |p| − R.
+fn altitude_of(body: Body, point: vec3<f32>) -> f32 {
+    let radius = body.centre.w;
+    let h = body.up.w;
+    let q = h * (2.0 * radius + h) + 2.0 * (radius + h) * dot(body.up.xyz, point) + dot(point, point);
+    return q / (radius + sqrt(max(radius * radius + q, 0.0)));
+}
+
+// Angle of the sun's centre above the horizon of a sphere, rad: exact near zero, rising more slowly beyond, right in sign. Below the
+// sphere's surface the horizon is level.
+fn sun_elevation(radius: f32, altitude: f32, mu_s: f32) -> f32 {
+    let h = max(altitude, 0.0);
+    let sine_dip = sqrt(h * (2.0 * radius + h)) / (radius + h);
+    let c = clamp(mu_s, -1.0, 1.0);
+    let sine = c * (radius / (radius + h)) + sqrt(1.0 - c * c) * sine_dip;
+    return sine * (1.0 + sine * sine / 6.0);
+}

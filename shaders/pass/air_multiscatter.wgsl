@@ -3,7 +3,7 @@
 // Rust side: engine/src/render/pass/air_tables.rs.
 
 #include "lib/air.wgsl"
-#include "lib/occlusion.wgsl"
+#include "lib/sunlight.wgsl"
 
 @group(0) @binding(0) var<uniform> air: Air;
 @group(0) @binding(1) var table: texture_storage_2d<rgba16float, write>;
@@ -44,7 +44,7 @@ fn bake(@builtin(workgroup_id) texel: vec3<u32>, @builtin(local_invocation_index
         let extinction = max(air.extinction * density, vec3<f32>(1e-20));
         let kept = exp(-extinction * (to_s - from_s));
         let gain = through * (air.scattering * density) * (1.0 - kept) / extinction;
-        let lit = visible_above_limb(SUN_RAD, air_sun_elevation(air, h, c)) * air_sun_transmittance(air, transmittance, linear, 0, h, c);
+        let lit = visible_above_limb(SUN_RAD, sun_elevation(air.shape.x, h, c)) * air_sun_transmittance(air, transmittance, linear, 0, h, c);
         light += gain * lit / 12.5663706144;
         scattered += gain;
         through *= kept;

@@ -4,11 +4,16 @@
 #include "lib/hull.wgsl"
 #include "lib/ship.wgsl"
 #include "lib/lambert.wgsl"
+#include "lib/daylight.wgsl"
 #include "lib/shadow.wgsl"
 
 @group(0) @binding(0) var<uniform> frame: Frame;
 @group(0) @binding(1) var<uniform> bodies: Bodies;
 @group(0) @binding(2) var<uniform> exposure: Exposure;
+@group(1) @binding(0) var<uniform> airs: Airs;
+@group(1) @binding(1) var transmittance: texture_2d_array<f32>;
+@group(1) @binding(3) var irradiance: texture_2d_array<f32>;
+@group(1) @binding(4) var linear: sampler;
 @group(1) @binding(5) var shadow_map: texture_depth_2d;
 @group(1) @binding(6) var shadow_compare: sampler_comparison;
 @group(1) @binding(7) var<uniform> shadow: Shadow;
@@ -82,12 +87,11 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
     let reflected = reflect(-v, n);
     if in.host >= 0 {
         let body = bodies.list[in.host];
-        let up = -normalize(body.centre.xyz - in.point);
+        let light = daylight(body, frame.star, in.point, airs.list[u32(max(body.ids.z, 0))], transmittance, irradiance, linear);
+        let up = light.up;
         let sine = min(body.centre.w / length(body.centre.xyz - in.point), 0.99999);
-        // Height of the star above the host's limb, in units of its disc.
-        let dip = asin(sine) - 1.5707963;
-        let elevation = asin(clamp(dot(l, up), -1.0, 1.0)) - dip;
-        sun *= smoothstep(-sigma, sigma, elevation);
+        sun *= light.sun;
+        ambient += body.illuminance.rgb * light.sky * (0.5 + 0.5 * dot(n, up));
         // The lit ground below: Lambert, seen under the sun's height at the point beneath the ship.
         let ground = body.albedo.rgb / PI * body.illuminance.rgb * sun_cosine(dot(up, body.sun.xyz), 0.15);
         ambient += PI * ground * sphere_form_factor(sine, dot(n, -up));

@@ -3,10 +3,15 @@
 #include "lib/frame.wgsl"
 #include "lib/sphere.wgsl"
 #include "lib/lambert.wgsl"
+#include "lib/daylight.wgsl"
 
 @group(0) @binding(0) var<uniform> frame: Frame;
 @group(0) @binding(1) var<uniform> bodies: Bodies;
 @group(0) @binding(2) var<uniform> exposure: Exposure;
+@group(1) @binding(0) var<uniform> airs: Airs;
+@group(1) @binding(1) var transmittance: texture_2d_array<f32>;
+@group(1) @binding(3) var irradiance: texture_2d_array<f32>;
+@group(1) @binding(4) var linear: sampler;
 @group(2) @binding(0) var albedo_map: texture_2d<f32>;
 @group(2) @binding(1) var night_map: texture_2d<f32>;
 @group(2) @binding(2) var map_sampler: sampler;
@@ -89,7 +94,8 @@ fn fragment(in: Varying) -> Output {
     } else if radius > 2.0e7 {
         albedo = banded(albedo, fixed);
     }
-    let lit = sun_cosine(dot(normal, body.sun.xyz), body.sun.w);
+    let light = daylight(body, frame.star, ray * hit.distance, airs.list[u32(max(body.ids.z, 0))], transmittance, irradiance, linear);
+    let lit = light.sun * sun_cosine(dot(normal, body.sun.xyz), body.sun.w) + light.sky;
     var luminance = albedo / PI * body.illuminance.rgb * lit;
     luminance += night * NIGHT_CD_M2;
 
