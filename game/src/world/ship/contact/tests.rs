@@ -167,3 +167,22 @@ fn a_guided_descent_ends_on_its_feet() {
     let r = world.readout();
     assert!(r.heading_pitch_roll_rad[1].abs() < 0.05 && r.heading_pitch_roll_rad[2].abs() < 0.05);
 }
+
+#[test]
+fn the_automatic_landing_stands_at_its_spot() {
+    use crate::command::{Spot, Target};
+    let mut world = over(&rock(true), 3_000.0, DVec3::new(40.0, 0.0, 0.0));
+    let spot = Spot { lat_udeg: 22_920_000, lon_udeg: 74_490_000 };
+    act(&mut world, Action::Target(Some(Target { body: BodyId(0), spot: Some(spot) })));
+    act(&mut world, Action::Guidance(Guidance::Land));
+    let landed = (0..60_000).any(|_| {
+        idle(&mut world, 1);
+        matches!(world.ship.motion, Motion::Landed(_) | Motion::Crashed(_))
+    });
+    let (speed, _) = world.ship.last_contact.unwrap_or_default();
+    let r = world.readout();
+    let away = r.target.and_then(|t| t.ground_distance_m).unwrap_or(f64::NAN);
+    println!("touchdown {speed:.2} m/s, {away:.1} m from the spot, {:?}", world.ship.motion);
+    assert!(landed && matches!(world.ship.motion, Motion::Landed(_)), "{:?} {:?}", world.ship.motion, world.ship.landing);
+    assert!(speed < 3.0 && away < 500.0, "{speed} m/s, {away} m away");
+}
