@@ -103,13 +103,6 @@ pub enum SettingsError {
     Encode(#[from] toml::ser::Error),
 }
 
-/// The folder for what the player writes: the one given, or the system's place for a user's data.
-pub fn data_dir(given: Option<&Path>) -> PathBuf {
-    given.map(Path::to_path_buf).unwrap_or_else(|| {
-        directories::ProjectDirs::from("", "", "Syzygy").map_or_else(|| PathBuf::from("syzygy-data"), |d| d.data_dir().to_path_buf())
-    })
-}
-
 impl Settings {
     /// Reads the settings of a data folder. Where there is no file yet, the defaults; where it is broken, the defaults and a
     /// message for the player that says what is wrong and where the file was kept.

@@ -64,3 +64,100 @@ pub fn readout() -> Readout {
         last_contact: None,
     }
 }
+
+/// Readouts with values that a display must survive.
+pub fn extremes() -> Vec<Readout> {
+    use crate::command::{Spot, Target};
+    use crate::world::readout::{TargetReadout, Warning};
+    let mut escape = readout();
+    escape.orbit = OrbitReadout {
+        apoapsis_m: f64::INFINITY,
+        period_s: f64::INFINITY,
+        to_apoapsis_s: f64::INFINITY,
+        to_periapsis_s: -1e9,
+        ..escape.orbit
+    };
+    escape.warnings = vec![Warning::Crashed, Warning::PullUp, Warning::Heat, Warning::WarpLowered];
+    escape.sun_visible = 0.57;
+    escape.eclipsed_by = Some(BodyId(1));
+    escape.guidance_phase = "braking";
+    escape.target = Some(TargetReadout {
+        target: Target { body: BodyId(1), spot: Some(Spot { lat_udeg: 1, lon_udeg: -1 }) },
+        distance_m: 1e13,
+        closing_m_s: -3e5,
+        ground_distance_m: Some(1.0),
+    });
+    let broken = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, f64::MAX].map(|x| {
+        let v = DVec3::splat(x);
+        let markers = Markers { prograde: v, surface_prograde: v, normal: v, radial_out: v, zenith: v, north: v, target: v, sun: v };
+        Readout {
+            altitude_m: x,
+            ground_m: x,
+            lat_lon_rad: (x, x),
+            orbital_speed_m_s: x,
+            surface_speed_m_s: x,
+            vertical_speed_m_s: x,
+            orbit: OrbitReadout {
+                apoapsis_m: x,
+                periapsis_m: x,
+                period_s: x,
+                eccentricity: x,
+                inclination_rad: x,
+                to_apoapsis_s: x,
+                to_periapsis_s: x,
+            },
+            heading_pitch_roll_rad: [x; 3],
+            markers,
+            density_kg_m3: x,
+            dynamic_pressure_pa: x,
+            mach: x,
+            heat_flux_w_m2: x,
+            load_g: x,
+            throttle: x,
+            propellant_kg: (x, x),
+            delta_v_m_s: x,
+            sun_visible: x,
+            last_contact: Some((x, 0)),
+            target: Some(TargetReadout { distance_m: x, closing_m_s: x, ground_distance_m: Some(x), ..escape.target.unwrap() }),
+            ..readout()
+        }
+    });
+    let mut all = vec![escape];
+    all.extend(broken);
+    all
+}
+
+/// A small World.
+pub fn world() -> crate::world::World {
+    crate::save::fixture::worlds().remove(0)
+}
+
+/// Runs two frames of a HUD without a window and returns the texts of the second one.
+pub fn run(mut show: impl FnMut(&egui::Context)) -> Vec<String> {
+    let ctx = egui::Context::default();
+    super::style::apply(&ctx);
+    let mut texts = Vec::new();
+    for _ in 0..2 {
+        let input = egui::RawInput {
+            screen_rect: Some(egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(1280.0, 720.0))),
+            ..Default::default()
+        };
+        let output = ctx.run_ui(input, |ui| show(ui.ctx()));
+        texts.clear();
+        for shape in &output.shapes {
+            collect(&shape.shape, &mut texts);
+        }
+        let _ = ctx.tessellate(output.shapes.clone(), 1.0);
+        output.drop_without_applying_deltas();
+    }
+    texts
+}
+
+fn collect(shape: &egui::Shape, texts: &mut Vec<String>) {
+    match shape {
+        egui::Shape::Text(text) => texts.push(text.galley.text().to_owned()),
+        egui::Shape::Vec(all) => all.iter().for_each(|s| collect(s, texts)),
+        egui::Shape::Mesh(mesh) => assert!(mesh.vertices.iter().all(|v| v.pos.is_finite()), "a vertex that is nowhere"),
+        _ => {}
+    }
+}
