@@ -12,6 +12,8 @@ pub mod readout;
 pub mod ship;
 pub mod start;
 pub mod system;
+#[cfg(test)]
+mod tests;
 
 use crate::command::{Action, Axes, Commands, Guidance, Hold, Target, WARP_ONE, WARP_QUARTERS};
 use engine::orbit::arc::Arc as OrbitArc;
@@ -176,8 +178,14 @@ impl World {
         let stepped = flight::step(&mut self.ship, &local, &rigid, axes, self.target);
         self.time = self.time.plus(1);
         self.ship.motion = contact::settle(&mut self.ship, &local, &rigid, &stepped, axes, self.time);
-        if !matches!(self.ship.motion, Motion::Fly(_)) {
-            return;
+        match self.ship.motion {
+            Motion::Fly(_) => {}
+            // What rests costs nothing at any warp; but the clock does not run away under a pilot who has just landed.
+            Motion::Landed(_) | Motion::Crashed(_) => {
+                self.warp_asked = self.warp_asked.min(WARP_ONE);
+                return;
+            }
+            _ => return,
         }
         if self.time.ticks % SPHERE_CHECK_TICKS == 0 {
             self.change_sphere();

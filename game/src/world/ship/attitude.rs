@@ -155,7 +155,7 @@ pub fn raise_roof(attitude: DQuat, roof: DVec3) -> DQuat {
 }
 
 /// The smallest rotation that takes unit vector `from` to `to`; about `spare` where they oppose.
-fn arc(from: DVec3, to: DVec3, spare: DVec3) -> DQuat {
+pub fn arc(from: DVec3, to: DVec3, spare: DVec3) -> DQuat {
     let to = to.normalize_or(from);
     let cross = from.cross(to);
     let (s, c) = (cross.length(), from.dot(to));

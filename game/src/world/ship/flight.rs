@@ -52,12 +52,12 @@ pub struct Stepped {
     pub quiet: bool,
 }
 
-/// The controls that pilot and hold ask for.
+/// The controls that pilot and hold ask for. With the gear down, or held level, the nozzles lift; else they push forward.
 fn manual(ship: &Ship, local: &Local, rigid: &Rigid, axes: Axes, target: Option<Target>) -> Controls {
     Controls {
         demand: stick(ship, local, rigid, axes, target),
         throttle: f64::from(ship.throttle) / f64::from(u16::MAX),
-        nozzle: if ship.hold == Hold::SurfaceVertical { 1.0 } else { 0.0 },
+        nozzle: if ship.gear_down || ship.hold == Hold::SurfaceVertical { 1.0 } else { 0.0 },
         translation: thrust::translation(axes),
     }
 }

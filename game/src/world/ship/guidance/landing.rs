@@ -277,7 +277,7 @@ impl Landing {
 
     fn descend(&mut self, ship: &mut Ship, local: &Local, rigid: &Rigid) -> Controls {
         let way = self.way(local);
-        let touched = ship.last_contact.is_some_and(|c| local.time.ticks - c.1.ticks <= 2);
+        let touched = ship.ground.contact.touching;
         let height = local.altitude_m - super::super::flight::surface_below_m(local) - ship.spec.standing_height_m();
         if touched || height < 0.02 {
             self.phase = Phase::Touchdown;
