@@ -233,7 +233,7 @@ mod tests {
     #[test]
     fn a_ray_meets_the_surface_function_within_the_cell() {
         let hills = Hills::earth();
-        for (lat, lon) in [(0.1, 0.2), (1.2, -2.0), (-0.6, 3.0), (1.570_7, 0.3)] {
+        for (lat, lon) in [(0.1, 0.2), (1.2, -2.0), (-0.6, 3.0), (1.57, 0.3)] {
             let d = sphere::direction_of_lat_lon(lat, lon);
             let patch = Patch::build(&hills, PatchKey::for_ship(None, hills.radius_m(), d), 12.0, None).unwrap();
             let ground = hills.radius_m() + hills.surface_m(d);

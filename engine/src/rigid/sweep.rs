@@ -22,7 +22,7 @@ pub fn first_hit(surface: &dyn Surface, from: DVec3, to: DVec3) -> Option<f64> {
     let mut s = 0.0;
     loop {
         let clearance = surface.clearance_m(at(s));
-        if !(clearance > 0.0) {
+        if clearance.is_nan() || clearance <= 0.0 {
             return Some(if s > 0.0 { bisect(surface, &at, clear_to, s) / length } else { 0.0 });
         }
         if s >= length {

@@ -5,6 +5,8 @@ use crate::cli::ShotArgs;
 use crate::session::Session;
 use crate::view::Rig;
 use crate::view::place::PlaceError;
+use crate::world::ship::contact;
+use engine::render::PassReport;
 use engine::scene::Force;
 use thiserror::Error;
 
@@ -20,6 +22,12 @@ pub enum ShotError {
     Studio(#[from] StudioError),
 }
 
+/// What the World's own heavy subsystem did, in the list of passes: contact is skipped far from ground.
+fn rapier(session: &Session) -> PassReport {
+    let (ran, why) = contact::subsystem(&session.world.ship);
+    PassReport { name: "rapier".to_owned(), ran, reason: why.to_owned(), gpu_ms: None }
+}
+
 /// Draws the picture and writes what was asked for.
 pub fn run(args: &ShotArgs, mut session: Session) -> Result<(), ShotError> {
     let rig = Rig::parse(&args.camera, &session.world.system)?;
@@ -28,7 +36,8 @@ pub fn run(args: &ShotArgs, mut session: Session) -> Result<(), ShotError> {
         session.world.move_clock(time);
     }
     let mut studio = Studio::open(args.backend, args.size, Force { all: args.force_passes })?;
-    let report = studio.draw(&session.world, &rig)?;
+    let mut report = studio.draw(&session.world, &rig)?;
+    report.passes.push(rapier(&session));
     studio.write(&args.out)?;
     if let Some(path) = &args.passes {
         write_passes(path, &report)?;
