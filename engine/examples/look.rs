@@ -2,6 +2,7 @@
 //!
 //! Not here: real orbits, maps or terrain (`syzygy shot` has them).
 
+use engine::air::{Layer, Medium, Phase, Profile};
 use engine::gpu::{BackendChoice, Gpu, ShaderLibrary};
 use engine::render::{OffscreenImage, Renderer, RendererOptions, StarCatalogue, Target};
 use engine::scene::{AutoOr, Body, Camera, Force, Occluder, Ship, Snapshot, Star, Surface};
@@ -39,7 +40,32 @@ fn body(id: u16, centre_m: DVec3, radius_m: f64, albedo: Vec3, sun_m: DVec3) -> 
         occluders: Vec::new(),
         albedo,
         surface: Surface::Smooth,
-        air: None,
+        air: (id == 3).then(earth_air),
+    }
+}
+
+/// Air like the Earth's: Rayleigh, haze and ozone, coefficients after Hillaire 2020.
+fn earth_air() -> Medium {
+    let layer = |scattering_per_m, absorption_per_m, profile, phase| Layer { scattering_per_m, absorption_per_m, profile, phase };
+    Medium {
+        bottom_radius_m: 6.371e6,
+        top_altitude_m: 1.0e5,
+        ground_albedo: Vec3::splat(0.2),
+        layers: vec![
+            layer(Vec3::new(5.8e-6, 13.6e-6, 33.1e-6), Vec3::ZERO, Profile::Exponential { scale_height_m: 8000.0 }, Phase::Rayleigh),
+            layer(
+                Vec3::splat(4.0e-6),
+                Vec3::splat(4.4e-7),
+                Profile::Exponential { scale_height_m: 1200.0 },
+                Phase::CornetteShanks { g: 0.8 },
+            ),
+            layer(
+                Vec3::ZERO,
+                Vec3::new(6.5e-7, 1.88e-6, 8.5e-8),
+                Profile::Tent { bottom_m: 1.0e4, peak_m: 2.5e4, top_m: 4.0e4 },
+                Phase::Rayleigh,
+            ),
+        ],
     }
 }
 
@@ -99,6 +125,13 @@ fn scenes(size: [u32; 2]) -> Vec<(&'static str, Snapshot)> {
     let mut eclipse = scene(size, to_sun, Vec3::Z, vec![body(3, below * 3.0, 6.371e6, blue, sun)], sun);
     eclipse.bodies.push(body(4, sun / AU * 3.9e8, 1.7374e6, grey, sun));
     eclipse.bodies[0].occluders = vec![Occluder { id: 4, centre_m: eclipse.bodies[1].centre_m, radius_m: 1.7374e6 }];
+    // On the ground at mid-morning, the ship standing 30 m ahead.
+    let mut landed =
+        scene(size, Vec3::new(0.35, 0.93, -0.06), Vec3::Z, vec![body(3, DVec3::new(0.0, 0.0, -6.371_004e6), 6.371e6, blue, sun)], sun);
+    landed.ships = vec![Ship {
+        height_above_ground_m: 3.4,
+        ..ship(Vec3::new(10.0, 28.0, -0.6), Quat::from_rotation_z(2.3) * Quat::from_rotation_x(1.5708), 0.0, 1.0)
+    }];
     let sunlit = scene(size, to_sun, Vec3::Z, vec![body(3, below, 6.371e6, blue, sun)], sun);
     vec![
         ("far", far),
@@ -110,6 +143,7 @@ fn scenes(size: [u32; 2]) -> Vec<(&'static str, Snapshot)> {
         ("night", night),
         ("eclipse", eclipse),
         ("sun", sunlit),
+        ("landed", landed),
     ]
 }
 

@@ -64,6 +64,24 @@ fn mirrored_structs_have_the_layout_of_their_twins() {
         ("lib/frame.wgsl", "Exposure", fields!(rust::ExposureUniform { pre, final_, average, settled })),
         ("lib/shadow.wgsl", "Shadow", fields!(rust::ShadowUniform { map_from_icrf, shape })),
         ("lib/ship.wgsl", "Ship", fields!(rust::ShipInstance { centre, hull_x, hull_y, hull_z, state })),
+        (
+            "lib/medium.wgsl",
+            "Air",
+            fields!(rust::AirUniform {
+                shape,
+                albedo,
+                scattering,
+                extinction,
+                inverse_height,
+                tent_bottom,
+                tent_rise,
+                tent_top,
+                tent_fall,
+                asymmetry
+            }),
+        ),
+        ("lib/medium.wgsl", "Airs", fields!(rust::AirsUniform { list })),
+        ("pass/sky.wgsl", "Sky", fields!(rust::SkyUniform { order, counts })),
         ("pass/exposure.wgsl", "Meter", fields!(rust::MeterUniform { range, trim, limit })),
     ];
     for (file, name, (fields, size)) in twins {

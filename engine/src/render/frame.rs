@@ -1,7 +1,7 @@
 //! THE FRAME: the passes in their order. Each is preceded by the reason for which it may be skipped; textures are values.
 //!
 //! Exposure: HDR is stored pre-exposed with the exposure of the frame before. A still (`adapt_s: None`), or a first frame, has
-//! none: its light is drawn twice, first with a middling exposure ([`STARTING_PRE`]) to take the histogram, then for good.
+//! none: its light is drawn twice, first small and with a middling exposure ([`STARTING_PRE`]) to take the histogram, then for good.
 
 use super::pass::Passes;
 use super::report::FrameReport;
@@ -36,7 +36,8 @@ pub fn draw(
         AutoOr::Ev100(ev) => renderer.shared.write_exposure(gpu, &ExposureUniform::fixed(ev)),
         AutoOr::Auto { .. } if unexposed => {
             renderer.shared.write_exposure(gpu, &ExposureUniform::starting(STARTING_PRE));
-            let (mut f, passes) = renderer.begin(gpu, scene, false)?;
+            let (small, meter_targets) = metering(gpu, scene, size);
+            let (mut f, passes) = renderer.begin(gpu, &small, Some(&meter_targets))?;
             let lit = light(&mut f, passes)?;
             passes.exposure.record(&mut f, &lit);
             f.keep_exposure();
@@ -45,7 +46,7 @@ pub fn draw(
         AutoOr::Auto { .. } => {}
     }
 
-    let (mut f, passes) = renderer.begin(gpu, scene, true)?;
+    let (mut f, passes) = renderer.begin(gpu, scene, None)?;
     let lit = light(&mut f, passes)?;
 
     let skip = passes.exposure.skip(scene, unexposed);
@@ -69,8 +70,16 @@ pub fn draw(
     renderer.end(gpu, report, still)
 }
 
+/// The scene and targets for taking the first histogram: a quarter of the picture each way tells as much of its light.
+fn metering(gpu: &Gpu, scene: &Snapshot, size: [u32; 2]) -> (Snapshot, Targets) {
+    let mut small = scene.clone();
+    let size = if size.iter().all(|n| *n >= 256) { size.map(|n| n / 4) } else { size };
+    small.camera.size_px = size;
+    (small, Targets::new(gpu, size))
+}
+
 /// Everything that shines, in this order: air tables, tile heights, shadow, smooth bodies, terrain, ships, stars and the sun's
-/// disc, sky (which lays the air over `opaque` and its depth, into `aerial`). From the tables of the air to the finished light: the HDR texture that the picture is made of.
+/// disc, sky (which lays the air over `opaque` and its depth, into `aerial`). The value is the finished light: the HDR texture that the picture is made of.
 fn light(f: &mut FrameContext<'_>, passes: &mut Passes) -> Result<wgpu::TextureView, RenderError> {
     f.clear_opaque();
 

@@ -192,14 +192,15 @@ impl Renderer {
         }
     }
 
-    /// The context of one round of passes; uniforms are written here. `measured` rounds are timed.
+    /// The context of one round of passes; uniforms are written here. A round into targets of its own
+    /// (to meter) is not timed.
     pub(crate) fn begin<'a>(
         &'a mut self,
         gpu: &'a Gpu,
         scene: &'a Snapshot,
-        measured: bool,
+        own_targets: Option<&'a Targets>,
     ) -> Result<(FrameContext<'a>, &'a mut Passes), RenderError> {
-        let targets = self.targets.as_ref().ok_or(RenderError::NothingDrawn)?;
+        let targets = own_targets.or(self.targets.as_ref()).ok_or(RenderError::NothingDrawn)?;
         let number = if scene.adapt_s.is_some() { self.number } else { 0 };
         let air_slots = self.passes.air_slots(scene);
         self.shared.frame.write(&gpu.queue, &FrameUniform::new(scene, number));
@@ -214,7 +215,7 @@ impl Renderer {
             targets,
             maps: &self.maps,
             air_slots,
-            timer: (measured && self.options.measure).then_some(&mut self.timer),
+            timer: (own_targets.is_none() && self.options.measure).then_some(&mut self.timer),
             report: FrameReport::default(),
         };
         Ok((context, &mut self.passes))
