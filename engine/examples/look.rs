@@ -123,7 +123,7 @@ fn scenes(size: [u32; 2]) -> Vec<(&'static str, Snapshot)> {
     let mut night = scene(size, Vec3::new(-0.4, 0.9, 0.2), Vec3::Z, vec![body(3, below, 6.371e6, blue, night_sun)], night_sun);
     night.ships = vec![ship(Vec3::new(-16.0, 52.0, 5.0), attitude, 0.3, 0.0)];
     let mut eclipse = scene(size, to_sun, Vec3::Z, vec![body(3, below * 3.0, 6.371e6, blue, sun)], sun);
-    eclipse.bodies.push(body(4, sun / AU * 3.9e8, 1.7374e6, grey, sun));
+    eclipse.bodies.push(body(4, sun / AU * 3.6e8, 1.7374e6, grey, sun));
     eclipse.bodies[0].occluders = vec![Occluder { id: 4, centre_m: eclipse.bodies[1].centre_m, radius_m: 1.7374e6 }];
     // On the ground at mid-morning, the ship standing 30 m ahead.
     let mut landed =
@@ -168,8 +168,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         let started = std::time::Instant::now();
         let report = renderer.render(&gpu, &scene, Target::Image(&image), None)?;
         let pixels = image.read_rgba8(&gpu)?;
-        let bad = renderer.read_hdr(&gpu)?.rgba.iter().filter(|v| !v.is_finite()).count();
-        println!("{name}: {:.0} ms, {bad} not finite", started.elapsed().as_secs_f64() * 1e3);
+        let hdr = renderer.read_hdr(&gpu)?.rgba;
+        let bad = hdr.iter().filter(|v| !v.is_finite()).count();
+        let most = hdr.chunks_exact(4).map(|t| t[1]).fold(0.0, f32::max);
+        println!("{name}: {:.0} ms, {bad} not finite, at most {most:.3e} cd/m²", started.elapsed().as_secs_f64() * 1e3);
         for p in &report.passes {
             println!("    {:12} {:5} {:>8} {}", p.name, p.ran, p.gpu_ms.map_or(String::new(), |ms| format!("{ms:.2} ms")), p.reason);
         }

@@ -92,12 +92,15 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
         let sine = min(body.centre.w / length(body.centre.xyz - in.point), 0.99999);
         sun *= light.sun;
         ambient += body.illuminance.rgb * light.sky * (0.5 + 0.5 * dot(n, up));
-        // The lit ground below: Lambert, seen under the sun's height at the point beneath the ship.
-        let ground = body.albedo.rgb / PI * body.illuminance.rgb * sun_cosine(dot(up, body.sun.xyz), 0.15);
+        // The lit ground beneath the ship: Lambert, under its own daylight.
+        let foot = in.point - up * max(altitude_of(body, in.point), 0.0);
+        let below = daylight(body, frame.star, foot, airs.list[u32(max(body.ids.z, 0))], transmittance, irradiance, linear);
+        let ground = body.albedo.rgb / PI * body.illuminance.rgb * (below.sun * sun_cosine(dot(up, body.sun.xyz), body.sun.w) + below.sky);
         ambient += PI * ground * sphere_form_factor(sine, dot(n, -up));
-        let horizon = cos(asin(sine));
-        let facing = dot(reflected, -up) - horizon;
-        mirrored += ground * smoothstep(-0.5 * m.roughness - 0.02, 0.5 * m.roughness + 0.02, facing);
+        // Ground and sky mirrored in the hull.
+        let facing = dot(reflected, -up) - sqrt(1.0 - sine * sine);
+        let soft = 0.5 * m.roughness + 0.02;
+        mirrored += mix(body.illuminance.rgb * light.sky / PI, ground, smoothstep(-soft, soft, facing));
     }
     sun *= ship_shadow(shadow, shadow_map, shadow_compare, in.point + n * 0.05, sigma);
 

@@ -4,6 +4,7 @@
 #include "lib/sphere.wgsl"
 #include "lib/lambert.wgsl"
 #include "lib/daylight.wgsl"
+#include "lib/shadow.wgsl"
 
 @group(0) @binding(0) var<uniform> frame: Frame;
 @group(0) @binding(1) var<uniform> bodies: Bodies;
@@ -12,6 +13,9 @@
 @group(1) @binding(1) var transmittance: texture_2d_array<f32>;
 @group(1) @binding(3) var irradiance: texture_2d_array<f32>;
 @group(1) @binding(4) var linear: sampler;
+@group(1) @binding(5) var shadow_map: texture_depth_2d;
+@group(1) @binding(6) var shadow_compare: sampler_comparison;
+@group(1) @binding(7) var<uniform> shadow: Shadow;
 @group(2) @binding(0) var albedo_map: texture_2d<f32>;
 @group(2) @binding(1) var night_map: texture_2d<f32>;
 @group(2) @binding(2) var map_sampler: sampler;
@@ -95,7 +99,8 @@ fn fragment(in: Varying) -> Output {
         albedo = banded(albedo, fixed);
     }
     let light = daylight(body, frame.star, ray * hit.distance, airs.list[u32(max(body.ids.z, 0))], transmittance, irradiance, linear);
-    let lit = light.sun * sun_cosine(dot(normal, body.sun.xyz), body.sun.w) + light.sky;
+    let open = ship_shadow(shadow, shadow_map, shadow_compare, ray * hit.distance, body.sun.w);
+    let lit = light.sun * (open * sun_cosine(dot(normal, body.sun.xyz), body.sun.w)) + light.sky;
     var luminance = albedo / PI * body.illuminance.rgb * lit;
     luminance += night * NIGHT_CD_M2;
 

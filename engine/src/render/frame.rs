@@ -70,10 +70,10 @@ pub fn draw(
     renderer.end(gpu, report, still)
 }
 
-/// The scene and targets for taking the first histogram: a quarter of the picture each way tells as much of its light.
+/// The scene and targets for taking the first histogram: half the picture each way tells as much of its light.
 fn metering(gpu: &Gpu, scene: &Snapshot, size: [u32; 2]) -> (Snapshot, Targets) {
     let mut small = scene.clone();
-    let size = if size.iter().all(|n| *n >= 256) { size.map(|n| n / 4) } else { size };
+    let size = if size.iter().all(|n| *n >= 256) { size.map(|n| n / 2) } else { size };
     small.camera.size_px = size;
     (small, Targets::new(gpu, size))
 }

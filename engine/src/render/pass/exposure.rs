@@ -2,14 +2,12 @@
 
 use crate::gpu::buffer::Uniform;
 use crate::gpu::{Gpu, ShaderLibrary};
-use crate::light::occlusion::{Disc, visible};
 use crate::render::RenderError;
 use crate::render::pass::sun_disc;
 use crate::render::pipeline::{compute_pipeline, texture_entry, uniform_entry};
 use crate::render::shared::{FrameContext, Shared};
 use crate::scene::gpu_data::MeterUniform;
-use crate::scene::{AutoOr, Body, Snapshot};
-use crate::space::relative::narrow;
+use crate::scene::{AutoOr, Snapshot};
 use glam::Vec3;
 use wgpu::{BindGroupEntry, BufferUsages, ShaderStages};
 
@@ -22,11 +20,7 @@ fn glare_lx(scene: &Snapshot) -> f32 {
         return 0.0;
     }
     let star = &scene.star;
-    let sun = Disc::of_sphere(star.centre_m.as_dvec3(), f64::from(star.radius_m));
-    let before = |b: &&Body| b.centre_m.length_squared() < star.centre_m.length_squared();
-    let discs: Vec<Disc> =
-        scene.bodies.iter().filter(before).map(|b| Disc::of_sphere(b.centre_m.as_dvec3(), f64::from(b.radius_m))).collect();
-    let free = narrow(visible(sun, &discs));
+    let free = sun_disc::free_fraction(scene);
     free * star.intensity_cd.dot(Vec3::new(0.2126, 0.7152, 0.0722)) / star.centre_m.length_squared().max(1.0)
 }
 

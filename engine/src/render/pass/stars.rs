@@ -7,6 +7,7 @@ use crate::gpu::buffer::List;
 use crate::gpu::{Gpu, ShaderLibrary};
 use crate::render::RenderError;
 use crate::render::pass::smooth_body::{POINT_BELOW_PX, radius_px};
+use crate::render::pass::sun_disc;
 use crate::render::pipeline::PipelineKind;
 use crate::render::shared::{FrameContext, Shared};
 use crate::scene::{Body, Snapshot, Surface};
@@ -107,7 +108,9 @@ fn points_of(scene: &Snapshot) -> Vec<Point> {
     let star = &scene.star;
     let d2 = star.centre_m.length_squared();
     if star.radius_m / d2.max(1.0).sqrt() / scene.camera.pixel_rad() < POINT_BELOW_PX && d2 > 0.0 {
-        points.push(Point { position_m: star.centre_m.to_array(), illuminance_lx: (star.intensity_cd / d2).to_array() });
+        // A disc that is no bigger than a pixel is hidden by share, not by depth.
+        let lx = star.intensity_cd * (sun_disc::free_fraction(scene) / d2);
+        points.push(Point { position_m: star.centre_m.to_array(), illuminance_lx: lx.to_array() });
     }
     points
 }

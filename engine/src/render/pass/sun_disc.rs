@@ -2,11 +2,13 @@
 //! that the corona shows when a moon covers the disc, and drowns in exposure and sky at all other times.
 
 use crate::gpu::{Gpu, ShaderLibrary};
+use crate::light::occlusion::{Disc, visible};
 use crate::render::RenderError;
 use crate::render::pass::smooth_body::POINT_BELOW_PX;
 use crate::render::pipeline::PipelineKind;
 use crate::render::shared::{FrameContext, Shared};
-use crate::scene::Snapshot;
+use crate::scene::{Body, Snapshot};
+use crate::space::relative::narrow;
 use glam::Vec3;
 
 /// How far the corona is drawn, in radii of the star; `REACH` of the shader.
@@ -59,4 +61,14 @@ pub fn out_of_view(scene: &Snapshot) -> bool {
     let forward = camera.view_from_icrf.conjugate() * Vec3::NEG_Z;
     let off_axis = (centre.dot(forward) / distance.max(1.0)).clamp(-1.0, 1.0).acos();
     off_axis > half_diagonal + CORONA_REACH * angle + 0.01
+}
+
+/// Share of the star's disc that no body hides from the camera, 0 … 1.
+pub fn free_fraction(scene: &Snapshot) -> f32 {
+    let star = &scene.star;
+    let sun = Disc::of_sphere(star.centre_m.as_dvec3(), f64::from(star.radius_m));
+    let before = |b: &&Body| b.centre_m.length_squared() < star.centre_m.length_squared();
+    let disc = |b: &Body| Disc::of_sphere(b.centre_m.as_dvec3(), f64::from(b.radius_m));
+    let discs: Vec<Disc> = scene.bodies.iter().filter(before).map(disc).collect();
+    narrow(visible(sun, &discs))
 }
