@@ -1,4 +1,5 @@
-//! Draws the Earth's air by hand-made scenes into PNG files: `cargo run -p engine --example look_air -- DIR [WxH] [NAME]`.
+//! Draws the Earth's air by hand-made scenes into PNG files: `cargo run -p engine --example look_air -- DIR [WxH] [NAME] [STEPS]`; with
+//! STEPS, tells by how much the sky marched in so many steps differs from one of 256.
 //!
 //! Not here: terrain and real orbits (`syzygy shot` has them).
 
@@ -131,7 +132,23 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut renderer = Renderer::new(&gpu, RendererOptions { shaders: ShaderLibrary::checkout(), measure: true })?;
     let image = OffscreenImage::new(&gpu, size);
     let mut pictures = Vec::new();
-    for (name, scene) in scenes(size).into_iter().filter(|(n, _)| args.get(2).is_none_or(|o| o == n)) {
+    for (name, scene) in scenes(size).into_iter().filter(|(n, _)| args.get(2).is_none_or(|o| o == n || o == "all")) {
+        if let Some(steps) = args.get(3) {
+            let mut drawn = [steps.parse()?, 256].into_iter().map(|n| {
+                renderer.set_sky_steps(n);
+                let fixed = Snapshot { exposure: AutoOr::Ev100(12.0), ..scene.clone() };
+                renderer.render(&gpu, &fixed, Target::Image(&image), None)?;
+                Ok::<_, Box<dyn Error>>(renderer.read_hdr(&gpu)?.rgba)
+            });
+            let (Some(few), Some(many)) = (drawn.next().transpose()?, drawn.next().transpose()?) else { continue };
+            let floor = many.iter().step_by(2).fold(0.0_f32, |a, b| if *b < 1e5 { a.max(*b) } else { a }) * 1e-3;
+            let errors: Vec<f32> = few.iter().zip(&many).map(|(a, b)| (a - b).abs() / b.max(floor)).collect();
+            let worst = errors.iter().copied().enumerate().fold((0, 0.0), |w, e| if e.1 > w.1 { e } else { w });
+            let (x, y) = (worst.0 / 4 % size[0] as usize, worst.0 / 4 / size[0] as usize);
+            let mean = errors.iter().sum::<f32>() / errors.len() as f32;
+            println!("{name}: mean {:.3} %, worst {:.2} % at {x}, {y}", mean * 133.3, worst.1 * 100.0);
+            continue;
+        }
         let report = renderer.render(&gpu, &scene, Target::Image(&image), None)?;
         let pixels = image.read_rgba8(&gpu)?;
         let hdr = renderer.read_hdr(&gpu)?.rgba;
@@ -142,6 +159,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("{name}: sky {ms:.0} ms, {bad} not finite, brightest {brightest:.3e}, middle {middle:?} cd/m²");
         write_png(&dir.join(format!("{name}.png")), size, &pixels)?;
         pictures.push(pixels);
+    }
+    if pictures.is_empty() {
+        return Ok(());
     }
     let [w, h] = size.map(|n| n as usize);
     let sheet: Vec<u8> = pictures

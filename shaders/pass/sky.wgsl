@@ -49,16 +49,40 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
         if slot < 0 || path.start < 0.0 || surface <= path.start {
             continue;
         }
-        var end = min(path.exit, surface - path.start);
-        if stored <= 0.0 && path.ground >= 0.0 {
-            end = path.ground;  // no ground was drawn here: the datum stands for it
-        }
-        // A short way needs few steps; the count grows evenly, and its error is small enough that no edge shows.
-        let share = clamp(end / (0.25 * air.shape.y), 0.0, 1.0);
-        let count = u32(mix(6.0, f32(sky.counts.y), share));
         let sun = AirSun(body.sun.xyz, body.sun.w, 1.0, 1.0);
-        let light = air_march(air, transmittance, multiple, linear, slot, path, end, ray, sun, body, frame.star, count);
-        colour = colour * light.transmittance + light.radiance * body.illuminance.rgb * exposure.pre;
+        // From afar the air at the limb is thinner than a pixel: there, several rays across it stand for one.
+        let pixel = frame.up.w * (path.start + path.exit);
+        let low = air_altitude(air, path, clamp(-path.slope, 0.0, path.exit));
+        let thin = pixel > 0.05 * air.shape.y && low < air.shape.y + pixel && low > -pixel;
+        let rays = select(1u, 5u, thin);
+        var radiance = vec3<f32>(0.0);
+        var kept = vec3<f32>(0.0);
+        for (var k = 0u; k < rays; k++) {
+            var along = ray;
+            var way = path;
+            if thin {
+                let aside = ((f32(k) + 0.5) / f32(rays) - 0.5) * frame.up.w;
+                along = normalize(ray + normalize(body.up.xyz - ray * dot(ray, body.up.xyz)) * aside);
+                way = air_path(air, body.up.xyz, body.up.w, along);
+            }
+            if way.start < 0.0 || surface <= way.start {
+                kept += vec3<f32>(1.0);
+                continue;
+            }
+            var end = min(way.exit, surface - way.start);
+            if way.ground >= 0.0 && (stored <= 0.0 || thin) {
+                end = way.ground;  // no ground was drawn here: the datum stands for it
+            } else if thin {
+                end = way.exit;
+            }
+            // A short way needs few steps; the count grows evenly, and its error is small enough that no edge shows.
+            let share = clamp(end / (0.25 * air.shape.y), 0.0, 1.0);
+            let count = u32(mix(6.0, f32(sky.counts.y), share));
+            let light = air_march(air, transmittance, multiple, linear, slot, way, end, along, sun, body, frame.star, count);
+            radiance += light.radiance;
+            kept += light.transmittance;
+        }
+        colour = (colour * kept + radiance * body.illuminance.rgb * exposure.pre) / f32(rays);
     }
     return vec4<f32>(to_hdr(colour, 1.0), 1.0);
 }

