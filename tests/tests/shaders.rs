@@ -2,6 +2,7 @@
 //! field by field. A new mirrored struct is one more line in [`mirrored_structs_have_the_layout_of_their_twins`].
 
 use engine::gpu::ShaderLibrary;
+use engine::render::pass::sky_probe::{ProbeLight, ProbeRay};
 use engine::scene::gpu_data as rust;
 use wgpu::naga::{Module, TypeInner};
 
@@ -62,6 +63,26 @@ fn mirrored_structs_have_the_layout_of_their_twins() {
         ),
         ("lib/frame.wgsl", "Bodies", fields!(rust::BodiesUniform { list })),
         ("lib/frame.wgsl", "Exposure", fields!(rust::ExposureUniform { pre, final_, average, settled })),
+        (
+            "lib/medium.wgsl",
+            "Air",
+            fields!(rust::AirUniform {
+                shape,
+                albedo,
+                scattering,
+                extinction,
+                inverse_height,
+                tent_bottom,
+                tent_rise,
+                tent_top,
+                tent_fall,
+                asymmetry
+            }),
+        ),
+        ("lib/medium.wgsl", "Airs", fields!(rust::AirsUniform { list })),
+        ("pass/sky.wgsl", "Sky", fields!(rust::SkyUniform { order, counts })),
+        ("pass/sky_probe.wgsl", "ProbeRay", fields!(ProbeRay { up, ray, sun })),
+        ("pass/sky_probe.wgsl", "ProbeLight", fields!(ProbeLight { radiance, transmittance })),
         ("lib/shadow.wgsl", "Shadow", fields!(rust::ShadowUniform { map_from_icrf, shape })),
         ("lib/ship.wgsl", "Ship", fields!(rust::ShipInstance { centre, hull_x, hull_y, hull_z, state })),
         (
