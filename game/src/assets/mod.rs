@@ -66,8 +66,13 @@ impl Assets {
         let ship = errors.keep(self.ship(&start.ship));
         let system = errors.keep(self.system(&start.system, progress));
         let (Some(ship), Some(system)) = (ship, system) else { return Err(errors) };
+        self.world(key, &start, system, ship)
+    }
+
+    /// A World from a start that was read.
+    pub fn world(&self, key: &str, start: &StartSpec, system: Arc<System>, ship: Arc<ShipSpec>) -> Result<World, AssetErrors> {
         let document = self.named("starts", key)?;
-        World::from_start(system, ship, &start).map_err(|e| {
+        World::from_start(system, ship, start).map_err(|e| {
             let message = e.to_string();
             let place = message.split([' ', ':']).next().unwrap_or_default().to_owned();
             AssetErrors::one(document.fault_at(&place, message))

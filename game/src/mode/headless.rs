@@ -6,6 +6,7 @@ use crate::command::Commands;
 use crate::picture::{self, PictureError};
 use crate::session::Session;
 use crate::view::Rig;
+use crate::world::World;
 use engine::scene::Force;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::path::{Path, PathBuf};
@@ -36,8 +37,13 @@ pub enum HeadlessError {
     },
 }
 
-/// Runs `args.ticks` ticks; `commands` gives those of each tick. Returns the session at its end.
-pub fn run(args: &HeadlessArgs, mut session: Session, commands: &mut dyn FnMut(u64) -> Commands) -> Result<Session, HeadlessError> {
+/// Runs `args.ticks` ticks; `commands` gives those of each tick, `after` hears of each tick done. Returns the session at its end.
+pub fn run(
+    args: &HeadlessArgs,
+    mut session: Session,
+    commands: &mut dyn FnMut(u64) -> Commands,
+    after: &mut dyn FnMut(&Commands, &World),
+) -> Result<Session, HeadlessError> {
     let mut film = args.film.as_deref().map(|dir| Film::begin(dir, args)).transpose()?;
     let bar = ProgressBar::new(args.ticks);
     let style = ProgressStyle::with_template("{elapsed_precise} {bar:40} {pos}/{len} ticks, {eta} to go");
@@ -47,7 +53,9 @@ pub fn run(args: &HeadlessArgs, mut session: Session, commands: &mut dyn FnMut(u
         if let Some(film) = film.as_mut().filter(|_| tick % between == 0) {
             film.take(&session)?;
         }
-        session.tick(&commands(tick));
+        let now = commands(tick);
+        session.tick(&now);
+        after(&now, &session.world);
         if tick % PROGRESS_TICKS == 0 {
             bar.set_position(tick);
         }

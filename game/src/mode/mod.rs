@@ -8,9 +8,16 @@ pub mod places;
 pub mod probe;
 pub mod replay;
 pub mod shot;
+pub mod stage;
 pub mod studio;
 
-use crate::cli::{Cli, Mode, Places, Probe};
+use crate::cli::{CheckAssetsArgs, Cli, HeadlessArgs, Mode, Places, Probe, ShotArgs};
+use crate::command::Commands;
+use crate::replay::{Log, LogError, Player, Recorder};
+use crate::save::{self, Slots};
+use crate::session::Session;
+use crate::world::World;
+use stage::Stage;
 use std::process::ExitCode;
 
 /// What may stop a mode.
@@ -28,6 +35,45 @@ pub enum Error {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Log(#[from] crate::replay::LogError),
+    /// An asset is at fault.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Assets(#[from] crate::assets::AssetErrors),
+    /// No picture.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Shot(#[from] shot::ShotError),
+    /// A headless run ended early.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Headless(#[from] headless::HeadlessError),
+    /// No heights.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Height(#[from] probe::height::HeightError),
+    /// A body that the system does not have.
+    #[error("there is no body `{body}`")]
+    #[diagnostic(help("{help}"))]
+    NoBody {
+        /// What was asked for.
+        body: String,
+        /// What there is.
+        help: String,
+    },
+    /// A body without air.
+    #[error("{0} has no air: it has no [air] table")]
+    NoAir(String),
+    /// An answer cannot be written.
+    #[error("{}: cannot be written: {source}", path.display())]
+    Out {
+        /// The file.
+        path: std::path::PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// stdout is gone.
+    #[error("the answer cannot be written: {0}")]
+    Stdout(#[from] std::io::Error),
 }
 
 /// Runs the mode that the command line names, and turns what comes of it into an exit code.
@@ -35,11 +81,78 @@ pub fn run(cli: Cli) -> ExitCode {
     let mode = cli.mode.unwrap_or(Mode::Play(cli.play));
     let places = places_of(&mode);
     start_log(places.verbose);
-    let outcome = places::assets(places).map_err(Error::from).map(|_| ExitCode::SUCCESS);
+    let outcome = match &mode {
+        Mode::Play(_) => Ok(ExitCode::SUCCESS),
+        Mode::Headless(args) => headless(args).map(|()| ExitCode::SUCCESS),
+        Mode::Replay(args) => Stage::set(&args.places).map(|stage| replay::run(args, &mut |state| stage.world(state))),
+        Mode::Shot(args) => shot(args).map(|()| ExitCode::SUCCESS),
+        Mode::CheckAssets(args) => check_assets(args).map(|()| ExitCode::SUCCESS),
+        Mode::Probe(probe) => probe::run(probe).map(|()| ExitCode::SUCCESS),
+    };
     outcome.unwrap_or_else(|error| {
+        let code = error.exit_code();
         eprintln!("{:?}", miette::Report::new(error));
-        ExitCode::FAILURE
+        code
     })
+}
+
+impl Error {
+    /// 2 where there is no GPU, 1 for everything else.
+    fn exit_code(&self) -> ExitCode {
+        use studio::StudioError::Gpu;
+        match self {
+            Self::Shot(shot::ShotError::Studio(Gpu(_))) | Self::Headless(headless::HeadlessError::Studio(Gpu(_))) => ExitCode::from(2),
+            _ => ExitCode::FAILURE,
+        }
+    }
+}
+
+fn shot(args: &ShotArgs) -> Result<(), Error> {
+    let session = Stage::set(&args.places)?.session(&args.start)?;
+    Ok(shot::run(args, session)?)
+}
+
+fn headless(args: &HeadlessArgs) -> Result<(), Error> {
+    let stage = Stage::set(&args.places)?;
+    let log = args.commands.as_deref().map(|path| Log::read(path).map(|log| (path, log))).transpose()?;
+    let session = match &log {
+        // A recorded flight begins with its own state.
+        Some((path, log)) => {
+            let state = save::decode(&log.start).map_err(|problems| LogError::Contents { path: path.to_path_buf(), problems })?;
+            let world = stage.world(&state)?;
+            log.check_assets(path, &world)?;
+            Session::new(world)
+        }
+        None => stage.session(&args.start)?,
+    };
+    let mut log = log.map(|(_, log)| Player::new(log));
+    let start = session.world.clone();
+    let mut recorder = args.record.as_ref().map(|_| Recorder::new(&start));
+    let mut commands = |_| log.as_mut().and_then(Player::next_commands).unwrap_or_default();
+    let mut after = |commands: &Commands, world: &World| {
+        if let Some(recorder) = &mut recorder {
+            recorder.tick(commands, world);
+        }
+    };
+    let session = headless::run(args, session, &mut commands, &mut after)?;
+    if let Some(path) = &args.save {
+        let folder = path.parent().unwrap_or(std::path::Path::new("."));
+        Slots::new(folder).write_to(path, &save::label(&session.world), &save::encode(&session.world))?;
+    }
+    if let (Some(path), Some(recorder)) = (&args.record, recorder) {
+        recorder.finish(&session.world).write(path, &crate::replay::recorder::header(&start))?;
+    }
+    Ok(())
+}
+
+fn check_assets(args: &CheckAssetsArgs) -> Result<(), Error> {
+    let mut places = args.places.clone();
+    places.assets = args.dir.clone().or(places.assets);
+    let stage = Stage::set(&places)?;
+    stage.assets.check()?;
+    let a = &stage.assets;
+    println!("all sound: {} systems, {} ships, {} starts", a.systems().len(), a.ships().len(), a.starts().len());
+    Ok(())
 }
 
 fn places_of(mode: &Mode) -> &Places {

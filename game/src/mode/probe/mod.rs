@@ -1,3 +1,59 @@
 //! `syzygy probe`: one number or table at a time, for tests and tools outside.
 
 pub mod air;
+pub mod ephemeris;
+pub mod height;
+
+use super::Error;
+use super::stage::Stage;
+use crate::assets::fault::did_you_mean;
+use crate::cli::{Probe, ProbeCommon};
+use crate::world::system::System;
+use engine::orbit::BodyId;
+use std::fs::File;
+use std::io::{self, Write};
+use std::sync::Arc;
+
+/// Answers a probe.
+pub fn run(probe: &Probe) -> Result<(), Error> {
+    match probe {
+        Probe::Air(args) => {
+            let system = system(&args.common)?;
+            let body = system.body(find(&system, &args.body)?);
+            let Some(air) = &body.air else { return Err(Error::NoAir(args.body.clone())) };
+            answer(&args.common, |out| air::write(&air.column, &args.altitude_m, out))
+        }
+        Probe::Height(args) => {
+            let points = height::points(&args.points)?;
+            let system = system(&args.common)?;
+            let body = system.body(find(&system, &args.body)?);
+            let Some(relief) = &body.relief else { return Err(height::HeightError::NoGround(args.body.clone()).into()) };
+            answer(&args.common, |out| height::write(relief, &points, out))
+        }
+        Probe::Ephemeris(args) => {
+            let system = system(&args.common)?;
+            let body = find(&system, &args.body)?;
+            let center = args.center.as_deref().map(|c| find(&system, c)).transpose()?;
+            answer(&args.common, |out| ephemeris::write(&system.ephemeris, body, center, &args.tdb, out))
+        }
+    }
+}
+
+fn system(common: &ProbeCommon) -> Result<Arc<System>, Error> {
+    Stage::set(&common.places)?.system(&common.system)
+}
+
+fn find(system: &System, key: &str) -> Result<BodyId, Error> {
+    system.find(key).ok_or_else(|| {
+        let known: Vec<&str> = system.bodies.iter().map(|b| b.key.as_str()).collect();
+        let near = did_you_mean(key, known.iter().copied()).map(|n| format!("did you mean `{n}`? "));
+        Error::NoBody { body: key.to_owned(), help: format!("{}bodies are {}", near.unwrap_or_default(), known.join(", ")) }
+    })
+}
+
+fn answer(common: &ProbeCommon, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Error> {
+    let Some(path) = &common.out else { return Ok(write(&mut io::stdout().lock())?) };
+    let failed = |source| Error::Out { path: path.clone(), source };
+    let mut file = File::create(path).map_err(failed)?;
+    write(&mut file).map_err(failed)
+}
