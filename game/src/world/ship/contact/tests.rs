@@ -186,3 +186,28 @@ fn the_automatic_landing_stands_at_its_spot() {
     assert!(landed && matches!(world.ship.motion, Motion::Landed(_)), "{:?} {:?}", world.ship.motion, world.ship.landing);
     assert!(speed < 3.0 && away < 500.0, "{speed} m/s, {away} m away");
 }
+
+#[test]
+fn hops_on_the_shipped_moon_and_stands_again() {
+    let dir = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../assets");
+    let assets = crate::assets::Assets::new(dir, Vec::new());
+    let Ok(mut world) = assets.begin("moon_surface", &|_, _| {}) else { panic!("assets/starts/moon_surface.toml does not load") };
+    assert!(matches!(world.ship.motion, Motion::Landed(_)));
+    act(&mut world, Action::Guidance(Guidance::VerticalSpeed { cm_s: 400 }));
+    idle(&mut world, 300);
+    let height = world.readout().altitude_m - world.readout().ground_m;
+    assert!(height > 8.0, "{height} m");
+    act(&mut world, Action::Guidance(Guidance::VerticalSpeed { cm_s: -150 }));
+    let clock = std::time::Instant::now();
+    let ticks = (0..3_000).find(|_| {
+        idle(&mut world, 1);
+        matches!(world.ship.motion, Motion::Landed(_) | Motion::Crashed(_))
+    });
+    let (speed, _) = world.ship.last_contact.unwrap();
+    let rate = ticks.unwrap_or(3_000) as f64 / 60.0 / clock.elapsed().as_secs_f64();
+    println!("touchdown {speed:.2} m/s after {ticks:?} ticks, {rate:.0} x real time");
+    assert!(matches!(world.ship.motion, Motion::Landed(_)) && speed < 3.0, "{speed} m/s, {:?}", world.ship.motion);
+    let r = world.readout();
+    let [_, pitch, roll] = r.heading_pitch_roll_rad;
+    assert!(pitch.abs() < 0.5 && roll.abs() < 0.5, "upright: {pitch} {roll}");
+}
