@@ -121,7 +121,7 @@ fn scenes(size: [u32; 2]) -> Vec<(&'static str, Snapshot)> {
     portrait.ships = vec![ship(Vec3::new(-16.0, 38.0, -14.0), Quat::from_rotation_z(0.9) * Quat::from_rotation_x(1.35), 0.0, 1.0)];
     let night_sun = DVec3::new(0.0, 0.3, -0.95) * AU;
     let mut night = scene(size, Vec3::new(-0.4, 0.9, 0.2), Vec3::Z, vec![body(3, below, 6.371e6, blue, night_sun)], night_sun);
-    night.ships = vec![ship(Vec3::new(-16.0, 52.0, 5.0), attitude, 0.3, 0.0)];
+    night.ships = vec![ship(Vec3::new(-16.0, 52.0, 5.0), attitude, 0.0, 0.0)];
     let mut eclipse = scene(size, to_sun, Vec3::Z, vec![body(3, below * 3.0, 6.371e6, blue, sun)], sun);
     eclipse.bodies.push(body(4, sun / AU * 3.6e8, 1.7374e6, grey, sun));
     eclipse.bodies[0].occluders = vec![Occluder { id: 4, centre_m: eclipse.bodies[1].centre_m, radius_m: 1.7374e6 }];

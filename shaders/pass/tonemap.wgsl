@@ -1,4 +1,4 @@
-// Tone mapping: exposure, a filmic curve, sRGB, dithering. Rust side: engine/src/render/pass/tonemap.rs.
+// Tone mapping: smoothed edges, exposure, a filmic curve, sRGB, dithering. Rust side: engine/src/render/pass/tonemap.rs.
 
 #include "lib/frame.wgsl"
 #include "lib/color.wgsl"
@@ -9,6 +9,7 @@
 @group(1) @binding(1) var<uniform> wanted: Exposure;
 @group(1) @binding(2) var glare: texture_2d<f32>;
 @group(1) @binding(3) var linear: sampler;
+@group(1) @binding(4) var depth: texture_depth_2d;
 
 // 1 where the target keeps what it is given (we encode), 0 where it encodes itself.
 override encode: f32 = 1.0;
@@ -57,12 +58,57 @@ fn noise(pixel: vec2<f32>) -> f32 {
     return fract(52.9829189 * fract(dot(pixel, vec2<f32>(0.06711056, 0.00583715))));
 }
 
+// Roughly how bright a pixel will look, 0…1.
+fn shown(c: vec3<f32>, gain: f32) -> f32 {
+    let y = luminance_of(c) * gain;
+    return sqrt(y / (1.0 + y));
+}
+
+// Edges of solid things, smoothed along their direction [after Lottes 2009, "FXAA"]; stars and sky gradients are left alone.
+fn smoothed(pixel: vec2<i32>, gain: f32) -> vec3<f32> {
+    let middle = textureLoad(lit, pixel, 0).rgb;
+    let last = vec2<i32>(textureDimensions(lit)) - 1;
+    let n = clamp(pixel - vec2<i32>(0, 1), vec2<i32>(0), last);
+    let s = clamp(pixel + vec2<i32>(0, 1), vec2<i32>(0), last);
+    let w = clamp(pixel - vec2<i32>(1, 0), vec2<i32>(0), last);
+    let e = clamp(pixel + vec2<i32>(1, 0), vec2<i32>(0), last);
+    let solid = max(max(textureLoad(depth, n, 0), textureLoad(depth, s, 0)), max(textureLoad(depth, w, 0), textureLoad(depth, e, 0)));
+    if solid <= 0.0 {
+        return middle;
+    }
+    let north = shown(textureLoad(lit, n, 0).rgb, gain);
+    let south = shown(textureLoad(lit, s, 0).rgb, gain);
+    let west = shown(textureLoad(lit, w, 0).rgb, gain);
+    let east = shown(textureLoad(lit, e, 0).rgb, gain);
+    let centre = shown(middle, gain);
+    let lowest = min(centre, min(min(north, south), min(west, east)));
+    let highest = max(centre, max(max(north, south), max(west, east)));
+    let contrast = highest - lowest;
+    if contrast < max(0.06, 0.15 * highest) {
+        return middle;
+    }
+    // Along the edge: across the gradient.
+    let gradient = vec2<f32>(east - west, south - north);
+    let along = vec2<f32>(-gradient.y, gradient.x) / max(abs(gradient.x) + abs(gradient.y), 1e-4);
+    // Blend towards the mean of the four by how far the centre stands out, and along the edge by how clear it is.
+    let texel = 1.0 / vec2<f32>(textureDimensions(lit));
+    let uv = (vec2<f32>(pixel) + 0.5) * texel;
+    let a = textureSampleLevel(lit, linear, uv + along * texel * 0.75, 0.0).rgb;
+    let b = textureSampleLevel(lit, linear, uv - along * texel * 0.75, 0.0).rgb;
+    // Averages are taken of tone-mapped light, or a single bright pixel would win [Karis 2014].
+    let wa = 1.0 / (1.0 + luminance_of(a) * gain);
+    let wb = 1.0 / (1.0 + luminance_of(b) * gain);
+    let wm = 1.0 / (1.0 + luminance_of(middle) * gain);
+    return (a * wa + b * wb + middle * wm) / (wa + wb + wm);
+}
+
 @fragment
 fn fragment(in: Varying) -> @location(0) vec4<f32> {
-    let sharp = textureLoad(lit, vec2<u32>(in.position.xy), 0).rgb;
-    let spread = textureSampleLevel(glare, linear, in.uv, 0.0).rgb;
     // The meter puts the mean at 1 / 9.6, the curve has its middle grey at 0.18.
-    let hdr = mix(sharp, spread, glare_share) * (wanted.final_ / exposure.pre * 9.6 * 0.18);
+    let gain = wanted.final_ / exposure.pre * 9.6 * 0.18;
+    let sharp = smoothed(vec2<i32>(in.position.xy), gain);
+    let spread = textureSampleLevel(glare, linear, in.uv, 0.0).rgb;
+    let hdr = mix(sharp, spread, glare_share) * gain;
     let shift = f32(frame.counts.y % 64u) * 5.588238;
     let dither = noise(in.position.xy + shift) - 0.5;
     let encoded = srgb_encode(agx(hdr)) + dither / 255.0;

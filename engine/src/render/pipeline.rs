@@ -111,7 +111,7 @@ impl<'a> PipelineKind<'a> {
                 bias: wgpu::DepthBiasState::default(),
             }),
             multisample: wgpu::MultisampleState::default(),
-            fragment: self.colour.is_some().then(|| wgpu::FragmentState {
+            fragment: self.colour.map(|_| wgpu::FragmentState {
                 module: self.module,
                 entry_point: Some("fragment"),
                 compilation_options,

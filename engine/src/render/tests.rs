@@ -138,3 +138,15 @@ fn odd_targets_are_no_accident() {
     let error = renderer.register_body(&gpu, 3, &BodyMaps { albedo: Some(map), night: None }).unwrap_err().to_string();
     assert!(error.contains("body 3") && error.contains("expected 16"), "{error}");
 }
+
+#[test]
+fn a_lost_device_is_an_error_and_not_a_panic() {
+    let gpu = gpu();
+    let mut renderer = Renderer::new(&gpu, RendererOptions::default()).unwrap();
+    let image = OffscreenImage::new(&gpu, [16, 16]);
+    let scene = empty_scene(image.size);
+    gpu.device.destroy();
+    let _ = gpu.device.poll(wgpu::PollType::Poll);
+    let error = renderer.render(&gpu, &scene, Target::Image(&image), None).unwrap_err();
+    assert!(matches!(error, RenderError::DeviceLost(_)), "{error}");
+}

@@ -11,17 +11,17 @@ use glam::{Mat3, Vec3};
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct HullVertex {
-    /// Position with the gear down, m, and the material.
+    /// Position with the gear down, m.
     pub position: [f32; 3],
     /// Index into `MATERIALS` of `shaders/lib/hull.wgsl`.
     pub material: f32,
     /// Outward unit normal.
     pub normal: [f32; 3],
-    /// Not used.
+    /// Zero.
     pub pad: f32,
     /// How far the vertex moves when the gear is up, m.
     pub retract: [f32; 3],
-    /// Not used.
+    /// Zero.
     pub pad2: f32,
 }
 
@@ -167,9 +167,9 @@ pub fn hull() -> Mesh {
     use Material::{Accent, Bell, Ceramic, Glass, HeatShield, LampGreen, LampRed, LampWhite, Metal, Tank};
     let mut m = Mesh::default();
     // Nose cap, then the lifting body.
-    let nose: Vec<[f32; 5]> = (0..=6)
+    let nose: Vec<[f32; 5]> = (0..=6_u8)
         .map(|i| {
-            let a = f32::from(i as u8) / 6.0 * 0.5 * PI;
+            let a = f32::from(i) / 6.0 * 0.5 * PI;
             [-7.5 + 0.75 * (1.0 - a.cos()), 0.02 + 0.72 * a.sin(), 0.02 + 0.52 * a.sin(), -0.42, 2.0]
         })
         .collect();
@@ -243,19 +243,15 @@ pub fn hull() -> Mesh {
             Vec3::new(x(2.95), 2.03, 6.43),
         ];
         if side > 0.0 {
+            // Mirrored outlines run the other way round.
             wing.reverse();
-        } else {
             fin.reverse();
             stripe.reverse();
         }
-        m.plate(Ceramic, HeatShield, &wing, Vec3::Y, 0.24);
         let out = Vec3::new(x(0.93), -0.36, 0.0);
-        if side < 0.0 {
-            fin.reverse();
-            stripe.reverse();
-        }
-        m.plate(Ceramic, Ceramic, &if side > 0.0 { fin.iter().rev().copied().collect::<Vec<_>>() } else { fin.clone() }, out, 0.2);
-        m.plate(Accent, Accent, &if side > 0.0 { stripe.iter().rev().copied().collect::<Vec<_>>() } else { stripe.clone() }, out, 0.23);
+        m.plate(Ceramic, HeatShield, &wing, Vec3::Y, 0.24);
+        m.plate(Ceramic, Ceramic, &fin, out, 0.2);
+        m.plate(Accent, Accent, &stripe, out, 0.23);
         // RCS quads fore and aft, lamps at the wing tips.
         for z in [-5.1, 4.9] {
             let c = Vec3::new(x(if z < 0.0 { 1.26 } else { 1.9 }), if z < 0.0 { -0.05 } else { 0.75 }, z);
@@ -275,9 +271,9 @@ pub fn hull() -> Mesh {
     for (mouth, radius) in BELLS {
         let l = 1.75 * radius;
         let bell = |t: f32| [l * t, radius * (0.34 + 0.66 * t.powf(0.62))];
-        let mut profile: Vec<[f32; 2]> = (0..=12).map(|i| bell(f32::from(i as u8) / 12.0)).collect();
-        profile.extend((0..=12).rev().map(|i| {
-            let [z, r] = bell(f32::from(i as u8) / 12.0);
+        let mut profile: Vec<[f32; 2]> = (0..=12_u8).map(|i| bell(f32::from(i) / 12.0)).collect();
+        profile.extend((0..=12_u8).rev().map(|i| {
+            let [z, r] = bell(f32::from(i) / 12.0);
             [z.max(0.02), r - 0.04]
         }));
         profile.push([0.02, 0.01]);
@@ -293,7 +289,7 @@ pub fn hull() -> Mesh {
             m.rod(Tank, knee, foot, 0.11);
             let inward = Vec3::new(foot.x * 0.3, -0.8, foot.z * 0.62);
             m.rod(Metal, inward, hip.lerp(foot, 0.62), 0.07);
-            m.turned(Metal, foot - Vec3::Y * 0.0, Vec3::Y, &[[0.0, 0.01], [0.0, 0.52], [0.07, 0.5], [0.2, 0.16], [0.3, 0.02]], 20);
+            m.turned(Metal, foot, Vec3::Y, &[[0.0, 0.01], [0.0, 0.52], [0.07, 0.5], [0.2, 0.16], [0.3, 0.02]], 20);
         });
     }
     m

@@ -1,9 +1,9 @@
-//! Tone mapping: exposed HDR to display values, dithered so that no gradient bands.
+//! Tone mapping: exposed HDR to display values, edges of solid things smoothed, dithered so that no gradient bands.
 
 use crate::gpu::{Gpu, ShaderLibrary};
 use crate::render::RenderError;
 use crate::render::pass::bloom;
-use crate::render::pipeline::{PipelineKind, sampler_entry, texture_entry, uniform_entry};
+use crate::render::pipeline::{PipelineKind, depth_entry, sampler_entry, texture_entry, uniform_entry};
 use crate::render::shared::{FrameContext, Shared};
 use std::collections::BTreeMap;
 use wgpu::BindGroupEntry;
@@ -28,6 +28,7 @@ impl Tonemap {
                 uniform_entry(1),
                 texture_entry(2, wgpu::TextureViewDimension::D2),
                 sampler_entry(3, wgpu::SamplerBindingType::Filtering),
+                depth_entry(4),
             ],
         });
         Ok(Self { module, layout, frame_layout: shared.frame_layout.clone(), pipelines: BTreeMap::new() })
@@ -55,6 +56,7 @@ impl Tonemap {
                 BindGroupEntry { binding: 1, resource: f.shared.exposure_next.buffer.as_entire_binding() },
                 BindGroupEntry { binding: 2, resource: wgpu::BindingResource::TextureView(glare) },
                 BindGroupEntry { binding: 3, resource: wgpu::BindingResource::Sampler(&f.shared.linear) },
+                BindGroupEntry { binding: 4, resource: wgpu::BindingResource::TextureView(&f.targets.depth.view) },
             ],
         });
         let mut pass = f.draw_full_screen("tonemap", view, false);
