@@ -17,9 +17,9 @@ fn hull_material(index: u32) -> Material {
         case 4u: { return Material(vec3<f32>(0.46, 0.46, 0.48), 0.9, 0.38, 0.0); }     // metal
         case 5u: { return Material(vec3<f32>(0.24, 0.22, 0.22), 0.85, 0.36, 0.0); }    // bell
         case 6u: { return Material(vec3<f32>(0.72, 0.16, 0.03), 0.0, 0.45, 0.0); }     // accent
-        case 7u: { return Material(vec3<f32>(1.0, 0.04, 0.03), 0.0, 0.3, 900.0); }     // lamps
-        case 8u: { return Material(vec3<f32>(0.03, 1.0, 0.15), 0.0, 0.3, 700.0); }
-        default: { return Material(vec3<f32>(1.0, 0.95, 0.9), 0.0, 0.3, 900.0); }
+        case 7u: { return Material(vec3<f32>(1.0, 0.04, 0.03), 0.0, 0.3, 30.0); }      // lamps
+        case 8u: { return Material(vec3<f32>(0.03, 1.0, 0.15), 0.0, 0.3, 25.0); }
+        default: { return Material(vec3<f32>(1.0, 0.95, 0.9), 0.0, 0.3, 30.0); }
     }
 }
 

@@ -82,7 +82,8 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
     let l = to_star / star_distance;
     let sigma = frame.star.w / star_distance;
     var sun = frame.intensity.rgb / star_distance / star_distance;
-    var ambient = vec3<f32>(1e-3);
+    // Formation lights wash the hull faintly, so that it is found in the dark.
+    var ambient = vec3<f32>(0.02);
     var mirrored = vec3<f32>(0.0);
     let reflected = reflect(-v, n);
     if in.host >= 0 {
