@@ -28,7 +28,7 @@ pub enum Focus {
     /// The ship.
     #[default]
     Flight,
-    /// A menu: only Pause and Help get through.
+    /// A menu: only Pause, Help and what photo mode needs get through.
     Menu,
     /// A text field, or the binding screen: nothing gets through.
     Text,
@@ -199,7 +199,7 @@ impl Input {
             return;
         }
         for control in Control::ALL {
-            let heard = self.focus == Focus::Flight || matches!(control, Control::Pause | Control::Help);
+            let heard = self.focus == Focus::Flight || matches!(control, Control::Pause | Control::Help | Control::Photo | Control::HideHud | Control::SavePicture);
             if heard && self.bindings.sources(*control).contains(&source) {
                 self.queued.push(*control);
             }

@@ -10,6 +10,7 @@ pub mod replay;
 pub mod shot;
 pub mod stage;
 pub mod studio;
+pub mod window;
 
 use crate::cli::{CheckAssetsArgs, Cli, HeadlessArgs, Mode, Places, Probe, ShotArgs};
 use crate::command::Commands;
