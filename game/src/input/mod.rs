@@ -199,7 +199,8 @@ impl Input {
             return;
         }
         for control in Control::ALL {
-            let heard = self.focus == Focus::Flight || matches!(control, Control::Pause | Control::Help | Control::Photo | Control::HideHud | Control::SavePicture);
+            let heard = self.focus == Focus::Flight
+                || matches!(control, Control::Pause | Control::Help | Control::Photo | Control::HideHud | Control::SavePicture);
             if heard && self.bindings.sources(*control).contains(&source) {
                 self.queued.push(*control);
             }

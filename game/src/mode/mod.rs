@@ -83,7 +83,7 @@ pub fn run(cli: Cli) -> ExitCode {
     let places = places_of(&mode);
     start_log(places.verbose);
     let outcome = match &mode {
-        Mode::Play(_) => Ok(ExitCode::SUCCESS),
+        Mode::Play(args) => window::play(args),
         Mode::Headless(args) => headless(args).map(|()| ExitCode::SUCCESS),
         Mode::Replay(args) => Stage::set(&args.places).map(|stage| replay::run(args, &mut |state| stage.world(state))),
         Mode::Shot(args) => shot(args).map(|()| ExitCode::SUCCESS),

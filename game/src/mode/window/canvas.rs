@@ -27,6 +27,7 @@ pub struct Canvas {
 pub struct Painter {
     renderer: egui_wgpu::Renderer,
     jobs: Vec<egui::ClippedPrimitive>,
+    leaving: Vec<egui::TextureId>,
     pixels_per_point: f32,
     /// Clear the target first: nothing else is drawn in this frame.
     pub alone: bool,
@@ -57,7 +58,7 @@ impl Canvas {
         let native = engine::space::relative::narrow(window.scale_factor());
         let events = egui_winit::State::new(ctx.clone(), egui::ViewportId::ROOT, &window, Some(native), window.theme(), most);
         let renderer = egui_wgpu::Renderer::new(&gpu.device, config.format, egui_wgpu::RendererOptions::default());
-        let painter = Painter { renderer, jobs: Vec::new(), pixels_per_point: native, alone: true };
+        let painter = Painter { renderer, jobs: Vec::new(), leaving: Vec::new(), pixels_per_point: native, alone: true };
         Ok(Self { window, gpu: Arc::new(gpu), ctx, painter, surface, config, events, scaled: None })
     }
 
@@ -128,16 +129,17 @@ impl Canvas {
         let input = self.events.take_egui_input(&self.window);
         let mut output = self.ctx.run_ui(input, |ui| show(ui.ctx()));
         self.events.handle_platform_output(&self.window, std::mem::take(&mut output.platform_output));
-        let textures = std::mem::take(&mut output.textures_delta);
-        for (id, deltas) in &textures.set {
+        let set = std::mem::take(&mut output.textures_delta.set);
+        let free = std::mem::take(&mut output.textures_delta.free);
+        for (id, deltas) in &set {
             for delta in deltas {
                 self.painter.renderer.update_texture(&self.gpu.device, &self.gpu.queue, *id, delta);
             }
         }
-        for id in &textures.free {
-            self.painter.renderer.free_texture(id);
+        // What goes is still painted in this frame: it is freed before the next.
+        for id in std::mem::replace(&mut self.painter.leaving, free.into_iter().collect()) {
+            self.painter.renderer.free_texture(&id);
         }
-        textures.drop_without_applying();
         self.painter.pixels_per_point = output.pixels_per_point;
         self.painter.jobs = self.ctx.tessellate(std::mem::take(&mut output.shapes), output.pixels_per_point);
         output.drop_without_applying_deltas();

@@ -162,9 +162,7 @@ pub fn lists(assets: &Assets, slots: &Slots) -> Lists {
                 let detail = format!("{}  ·  {}  ·  {}", h.time.utc(), h.body, format::length(h.altitude_m));
                 SaveEntry { path: entry.path, title, detail, damage: None }
             }
-            Err(e) => {
-                SaveEntry { detail: entry.path.display().to_string(), path: entry.path, title, damage: Some(e.to_string()) }
-            }
+            Err(e) => SaveEntry { detail: entry.path.display().to_string(), path: entry.path, title, damage: Some(e.to_string()) },
         }
     });
     Lists { starts: starts.collect(), saves: saves.collect() }

@@ -9,6 +9,7 @@ pub mod clock;
 mod flight;
 pub mod job;
 
+use super::places;
 use crate::assets::Assets;
 use crate::cli::PlayArgs;
 use crate::settings::Settings;
@@ -24,6 +25,15 @@ pub struct Opening {
     pub assets: Assets,
     /// Folder of saves and settings.
     pub data: PathBuf,
+}
+
+/// `syzygy play`.
+///
+/// # Errors
+/// A folder that is missing. What goes wrong later is told where it happens, and is in the exit code.
+pub fn play(args: &PlayArgs) -> Result<ExitCode, super::Error> {
+    let assets = Assets::new(places::assets(&args.places)?, places::mods(&args.places)?);
+    Ok(run(Opening { args: args.clone(), assets, data: places::data_dir(&args.places) }))
 }
 
 /// Opens the window and plays until it is closed. Exit code 0, or 2 where no window or no device can be had.
