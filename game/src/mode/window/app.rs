@@ -168,6 +168,8 @@ impl App {
         }
         if self.renderer.is_none() || self.flight.is_none() {
             self.draw_loading();
+            // The threads that load need the processor more than this screen does.
+            std::thread::sleep(std::time::Duration::from_millis(40));
             return;
         }
         self.set_focus();
