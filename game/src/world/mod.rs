@@ -291,10 +291,10 @@ impl World {
 
     /// The same rigid body, written about another body.
     fn about(&self, rigid: Rigid, to: BodyId) -> Rigid {
-        let (old, new) = (self.system.ephemeris.state(rigid.body, self.time), self.system.ephemeris.state(to, self.time));
+        let old = self.system.ephemeris.relative(rigid.body, to, self.time);
         let state = State {
-            position: Position::new(rigid.state.position.0 + (old.position - new.position).0),
-            velocity: Velocity::new(rigid.state.velocity.0 + (old.velocity - new.velocity).0),
+            position: Position::new(rigid.state.position.0 + old.position.0),
+            velocity: Velocity::new(rigid.state.velocity.0 + old.velocity.0),
         };
         Rigid { body: to, state, ..rigid }
     }

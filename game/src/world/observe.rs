@@ -112,9 +112,7 @@ impl World {
     fn target_readout(&self, local: &Local, target: Target) -> TargetReadout {
         let offset = attitude::target_offset(&self.system, local, self.time, target);
         let distance_m = offset.length();
-        let host = self.system.ephemeris.state(local.id, self.time);
-        let body = self.system.ephemeris.state(target.body, self.time);
-        let mut velocity = (body.velocity - host.velocity).0 - local.v;
+        let mut velocity = self.system.ephemeris.relative(target.body, local.id, self.time).velocity.0 - local.v;
         let mut ground_distance_m = None;
         if let Some(spot) = target.spot {
             let b = self.system.body(target.body);

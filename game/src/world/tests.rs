@@ -9,7 +9,7 @@ use super::*;
 use crate::command::Spot;
 use engine::air::Medium;
 use engine::air::density::{Column, ColumnSpec};
-use engine::orbit::ephemeris::Ephemeris;
+use engine::orbit::ephemeris::{Ephemeris, Orbit, Path as EphemerisPath};
 use engine::orbit::rotation::Spin;
 use engine::terrain::Relief;
 use engine::units::DEG;
@@ -21,7 +21,12 @@ const START: SimTime = SimTime::from_ticks(1_000_000);
 fn lone_body(gm: f64, radius_m: f64, day_s: f64, air: Option<Column>) -> Arc<System> {
     let spin = Spin { pole_dec_rad: [90.0 * DEG, 0.0], meridian_rad: [0.3, core::f64::consts::TAU * 86_400.0 / day_s], ..Spin::default() };
     let medium = Medium { bottom_radius_m: radius_m, top_altitude_m: 1e5, ground_albedo: Vec3::splat(0.1), layers: Vec::new() };
-    let body = Body {
+    let body = rock(gm, radius_m, spin, air.map(|column| Air { column, medium }));
+    Arc::new(System { key: "test".into(), name: "Test".into(), bodies: vec![body], ephemeris: Ephemeris::default(), hash: String::new() })
+}
+
+fn rock(gm: f64, radius_m: f64, spin: Spin, air: Option<Air>) -> Body {
+    Body {
         key: "rock".into(),
         name: "Rock".into(),
         parent: None,
@@ -31,11 +36,25 @@ fn lone_body(gm: f64, radius_m: f64, day_s: f64, air: Option<Column>) -> Arc<Sys
         spin,
         albedo: Vec3::splat(0.1),
         intensity_cd: Vec3::ZERO,
-        air: air.map(|column| Air { column, medium }),
+        air,
         relief: Some(Arc::new(Relief::smooth(radius_m, false))),
         relief_max: 1.0,
-    };
-    Arc::new(System { key: "test".into(), name: "Test".into(), bodies: vec![body], ephemeris: Ephemeris::default(), hash: String::new() })
+    }
+}
+
+/// A planet with one moon on a circle, both smooth and airless.
+fn planet_and_moon() -> Arc<System> {
+    let (planet, moon, distance) = (3.986_004_4e14, 4.902_800e12, 3.844e8);
+    let mut bodies = vec![rock(planet, 6.371e6, Spin::default(), None), rock(moon, 1.737_4e6, Spin::default(), None)];
+    bodies[1].parent = Some(BodyId(0));
+    bodies[1].soi_radius_m = 6.6e7;
+    let speed = ((planet + moon) / distance).sqrt();
+    let state = State { position: Position::xyz(distance, 0.0, 0.0), velocity: Velocity::xyz(0.0, speed, 0.0) };
+    let at_rest = EphemerisPath::Barycentric { epoch: START, state: State::default(), of_system: false };
+    let orbit = |parent, gm_m3_s2, path| Orbit { parent, gm_m3_s2, path };
+    let orbits = vec![orbit(None, planet, at_rest), orbit(Some(BodyId(0)), moon, EphemerisPath::FromParent { epoch: START, state })];
+    let ephemeris = Ephemeris::new(orbits).unwrap();
+    Arc::new(System { key: "two".into(), name: "Two".into(), bodies, ephemeris, hash: String::new() })
 }
 
 fn moon() -> Arc<System> {
@@ -133,6 +152,39 @@ fn warp_falls_before_the_air_is_reached() {
         entries.push(bits(&world));
     }
     assert!(entries.windows(2).all(|w| w[0] == w[1]), "same bits at every warp");
+}
+
+#[test]
+fn a_flyby_changes_spheres_at_the_same_ticks_at_every_warp() {
+    let system = planet_and_moon();
+    let end = START.ticks + 60 * 86_400 * 8;
+    let mut finals = Vec::new();
+    for level in [7, 8, 9, 10] {
+        // A transfer that meets the moon after some three days and is thrown by it.
+        let mut world = moving(&system, torch(), 400e3, DVec3::new(0.0, 0.0, 0.0));
+        let r = 6.771e6_f64;
+        let aim = 2.289;
+        let (s, c) = libm::sincos(-aim);
+        let velocity = DVec3::new(-s, c, 0.0) * (2.0 * 3.986_004_4e14 * (1.0 / r - 1.0 / 4.1e8)).sqrt();
+        let state = State { position: Position::new(DVec3::new(c, s, 0.0) * r), velocity: Velocity::new(velocity) };
+        world.ship.motion = Motion::Fly(Rigid { state, ..world.rigid() });
+        world.enter_arc();
+        world.warp_asked = level;
+        let mut spheres = vec![world.ship.body()];
+        while world.time.ticks < end {
+            while i64::from(WARP_QUARTERS[usize::from(world.warp_asked)] / 4) > end - world.time.ticks {
+                world.warp_asked -= 1;
+            }
+            idle(&mut world, 1);
+            if spheres.last() != Some(&world.ship.body()) {
+                spheres.push(world.ship.body());
+                world.warp_asked = level;
+            }
+        }
+        assert_eq!(spheres, [BodyId(0), BodyId(1), BodyId(0)], "level {level}");
+        finals.push(bits(&world));
+    }
+    assert!(finals.windows(2).all(|w| w[0] == w[1]), "same bits at every warp");
 }
 
 #[test]

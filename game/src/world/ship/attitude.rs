@@ -209,7 +209,7 @@ pub fn target_offset(system: &System, local: &Local, time: SimTime, target: Targ
 
 /// Position of `body` from the centre of `host`, ICRF axes, m.
 pub fn offset_of_body(system: &System, host: BodyId, body: BodyId, time: SimTime) -> DVec3 {
-    if host == body { DVec3::ZERO } else { (system.ephemeris.state(body, time).position - system.ephemeris.state(host, time).position).0 }
+    system.ephemeris.relative(body, host, time).position.0
 }
 
 /// Unit direction of a spot in the body's turning axes.

@@ -52,9 +52,10 @@ pub struct Wake {
     pub reason: Reason,
 }
 
-/// Altitude under which a ship is integrated and not sampled, m: the top of the air, or what mountains reach.
+/// Altitude under which a ship is integrated and not sampled, m: the top of the air, or what mountains reach at most.
 pub fn floor_m(body: &Body) -> f64 {
-    air_top_m(body).max((15.0 * KM).min(0.25 * body.radius_m))
+    let mountains = body.relief.as_ref().map_or(0.0, |r| r.bound_m());
+    air_top_m(body).max((mountains + 2.0 * KM).max(15.0 * KM).min(0.25 * body.radius_m))
 }
 
 /// Searches the path ahead of `from`.
@@ -130,14 +131,10 @@ struct Child {
 #[allow(clippy::cast_possible_truncation)]
 fn children(system: &System, host: BodyId, at: SimTime) -> impl Iterator<Item = Child> {
     let gm = system.body(host).gm_m3_s2;
-    let centre = system.ephemeris.state(host, at);
     system.bodies.iter().enumerate().filter(move |(_, b)| b.parent == Some(host)).map(move |(i, b)| {
         let id = BodyId(i as u16);
-        let s = system.ephemeris.state(id, at);
-        let relative: State<Centred> = State {
-            position: engine::space::Position::new((s.position - centre.position).0),
-            velocity: engine::space::Velocity::new((s.velocity - centre.velocity).0),
-        };
+        let s = system.ephemeris.relative(id, host, at);
+        let relative = State { position: engine::space::Position::new(s.position.0), velocity: engine::space::Velocity::new(s.velocity.0) };
         let (peri, apo) = apsides(gm + b.gm_m3_s2, &relative);
         let fastest = (2.0 * gm / (0.9 * peri).max(1.0)).sqrt();
         Child { id, soi_m: b.soi_radius_m, reach: (0.9 * peri - b.soi_radius_m, 1.1 * apo + b.soi_radius_m), speed_m_s: fastest }

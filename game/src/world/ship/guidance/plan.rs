@@ -29,6 +29,8 @@ const DESCENT_RESERVE: f64 = 0.15;
 const TRIES_PER_REVOLUTION: f64 = 120.0;
 /// Price of waiting: this fraction of the delta-v left, per second.
 const PRICE_OF_WAITING: f64 = 4.0e-6;
+/// Below this speed over the ground the way to a spot is a hop, m/s.
+const HOP_M_S: f64 = 600.0;
 /// Air this thin does not disturb the arc, kg/m³.
 const THIN_KG_M3: f64 = 1.0e-5;
 /// Air this thin does not hinder braking at speed, kg/m³.
@@ -57,7 +59,13 @@ impl Landing {
             None => flat_site(local.body, site_ahead(ship, local)),
         };
         let ground = ground_m(local.body, spot);
-        let gate_m = gate_m(local.body, spot);
+        let mut gate_m = gate_m(local.body, spot);
+        if local.altitude_m <= floor_m(local.body) && local.v_surface.length() < HOP_M_S {
+            // A short hop need not climb above the air.
+            let here = local.direction_fixed();
+            let angle = libm::atan2(here.cross(spot).length(), here.dot(spot));
+            gate_m = gate_m.min(mountains_m(local.body, spot).max(local.altitude_m) + 0.3 * angle * local.body.radius_m);
+        }
         let mut landing = Self { body: local.id, spot, ground_m: ground, gate_m, arrival_rad: 0.0, phase: Phase::Brake };
         if local.altitude_m <= floor_m(local.body) {
             return landing;
@@ -196,6 +204,11 @@ pub fn thin_above_m(body: &Body, density: f64) -> f64 {
 
 /// Altitude of the gate: above the mountains around the spot and above air that hinders braking.
 fn gate_m(body: &Body, spot: DVec3) -> f64 {
+    thin_above_m(body, GATE_KG_M3).max(mountains_m(body, spot))
+}
+
+/// Altitude above all ground within 32 km of a spot, with a margin.
+fn mountains_m(body: &Body, spot: DVec3) -> f64 {
     let (east, _, north) = sphere::east_up_north(spot);
     let mut highest = ground_m(body, spot);
     for ring in 1..=8 {
@@ -205,8 +218,7 @@ fn gate_m(body: &Body, spot: DVec3) -> f64 {
             highest = highest.max(ground_m(body, (spot + (east * s + north * c) * reach).normalize_or(spot)));
         }
     }
-    let margin = (1.5 * KM).min(0.1 * body.radius_m + 200.0);
-    thin_above_m(body, GATE_KG_M3).max(highest + margin)
+    highest + (1.5 * KM).min(0.1 * body.radius_m + 200.0)
 }
 
 /// Tangent of the steepest slope under a ship at `up`.
