@@ -1,5 +1,7 @@
 //! Tests: what crosses crates. Here is what they share: a device, and a way to ask WGSL functions for numbers.
 
+pub mod flights;
+
 use engine::gpu::{BackendChoice, Gpu, ShaderLibrary, readback};
 use std::borrow::Cow;
 use wgpu::util::DeviceExt as _;

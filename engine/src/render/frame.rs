@@ -32,7 +32,6 @@ pub fn draw(
     }
     let still = scene.adapt_s.is_none();
     let unexposed = still || !renderer.exposed;
-    let mut metered = FrameReport::default();
     match scene.exposure {
         AutoOr::Ev100(ev) => renderer.shared.write_exposure(gpu, &ExposureUniform::fixed(ev)),
         AutoOr::Auto { .. } if unexposed => {
@@ -42,7 +41,7 @@ pub fn draw(
             let lit = light(&mut f, passes)?;
             passes.exposure.record(&mut f, &lit);
             f.keep_exposure();
-            metered = f.submit();
+            f.submit();
         }
         AutoOr::Auto { .. } => {}
     }
@@ -67,8 +66,7 @@ pub fn draw(
     }
 
     f.keep_exposure();
-    let mut report = f.submit();
-    report.add_earlier_round(&metered);
+    let report = f.submit();
     renderer.end(gpu, report, still)
 }
 
