@@ -1,80 +1,151 @@
-//! Faults: what is wrong with an asset file, where, what was expected and what to do. All of them together, never the first only.
+//! Faults: what is wrong with an asset, where, what was expected and what may have been meant. All that is found is kept and
+//! shown together; each fault is rendered with its file, line, the offending excerpt and a caret.
+//!
+//! Not here: finding faults ([`super::reader`] and whoever reads with it).
 
-use miette::{Diagnostic, NamedSource, SourceSpan};
+use miette::{Diagnostic, LabeledSpan, MietteError, MietteSpanContents, SourceCode, SourceSpan, SpanContents};
 use std::fmt;
-use std::ops::Range;
 use std::path::{Path, PathBuf};
-use thiserror::Error;
+use std::sync::Arc;
 
-/// One thing that is wrong.
-#[derive(Clone, Debug, Error, Diagnostic)]
-#[error("{}{}: {message}", file.display(), line.map(|(l, c)| format!(":{l}:{c}")).unwrap_or_default())]
-pub struct Fault {
+/// A text file that was read.
+#[derive(Debug, PartialEq, Eq)]
+pub struct Source {
+    /// Where it lies.
+    pub path: PathBuf,
+    /// What it holds.
+    pub text: String,
+}
+
+/// A stretch of a file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct At {
     /// The file.
-    pub file: PathBuf,
-    /// Line and column, from 1, where known.
-    pub line: Option<(usize, usize)>,
+    pub source: Arc<Source>,
+    /// First byte.
+    pub start: usize,
+    /// Byte after the last.
+    pub end: usize,
+}
+
+impl At {
+    /// The file as a whole.
+    pub fn whole(source: &Arc<Source>) -> Self {
+        Self { source: source.clone(), start: 0, end: 0 }
+    }
+
+    /// Line and column of the beginning, both from 1, and the line itself.
+    fn line(&self) -> (usize, usize, &str) {
+        let text = &self.source.text;
+        let start = (0..=self.start.min(text.len())).rev().find(|i| text.is_char_boundary(*i)).unwrap_or(0);
+        let before = &text[..start];
+        let number = before.matches('\n').count() + 1;
+        let begin = before.rfind('\n').map_or(0, |i| i + 1);
+        let line = text[begin..].lines().next().unwrap_or("");
+        (number, text[begin..start].chars().count() + 1, line)
+    }
+}
+
+/// One fault.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Fault {
+    /// The file, also where it could not be read.
+    pub path: PathBuf,
+    /// The place in it, where there is one.
+    pub at: Option<At>,
     /// What is wrong, and what was expected.
     pub message: String,
-    /// What to do.
-    #[help]
+    /// What to do, such as the nearest valid name.
     pub help: Option<String>,
-    /// The file's text, for the excerpt.
-    #[source_code]
-    source_code: NamedSource<String>,
-    #[label("here")]
-    span: Option<SourceSpan>,
 }
 
 impl Fault {
-    /// A fault of a whole file.
-    pub fn of_file(file: &Path, message: impl Into<String>) -> Self {
-        Self {
-            file: file.to_owned(),
-            line: None,
-            message: message.into(),
-            help: None,
-            source_code: NamedSource::new(file.display().to_string(), String::new()),
-            span: None,
-        }
+    /// A fault at a place.
+    pub fn at(at: &At, message: impl Into<String>) -> Self {
+        Self { path: at.source.path.clone(), at: Some(at.clone()), message: message.into(), help: None }
     }
 
-    /// A fault at a place of a file's text.
-    pub fn at(file: &Path, text: &str, span: Option<Range<usize>>, message: impl Into<String>) -> Self {
-        let span = span.map(|s| s.start.min(text.len())..s.end.min(text.len()));
-        let line = span.as_ref().map(|s| {
-            let before = text.get(..s.start).unwrap_or_default();
-            (before.matches('\n').count() + 1, before.chars().rev().take_while(|c| *c != '\n').count() + 1)
-        });
-        Self {
-            file: file.to_owned(),
-            line,
-            message: message.into(),
-            help: None,
-            source_code: NamedSource::new(file.display().to_string(), text.to_owned()),
-            span: span.map(|s| (s.start, s.end.saturating_sub(s.start)).into()),
-        }
+    /// A fault of a file that could not be read.
+    pub fn file(path: &Path, message: impl Into<String>) -> Self {
+        Self { path: path.to_owned(), at: None, message: message.into(), help: None }
     }
 
-    /// The same fault with advice.
+    /// Adds what to do.
     #[must_use]
-    pub fn help(mut self, help: impl Into<String>) -> Self {
-        self.help = Some(help.into());
+    pub fn help(mut self, help: Option<String>) -> Self {
+        self.help = help.or(self.help);
         self
+    }
+
+    /// Line, from 1; `None` where the file could not be read.
+    pub fn line(&self) -> Option<usize> {
+        self.at.as_ref().map(|a| a.line().0)
     }
 }
 
-/// Everything that is wrong.
-#[derive(Clone, Debug, Default, Error, Diagnostic)]
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let place = self.at.as_ref().map(|at| at.line()).map_or_else(String::new, |(line, column, _)| format!(":{line}:{column}"));
+        write!(f, "{}{place}: {}", self.path.display(), self.message)
+    }
+}
+
+impl Fault {
+    /// In full: place, message, the offending excerpt with a caret, help.
+    pub fn text(&self) -> String {
+        let mut out = self.to_string();
+        if let Some(at) = &self.at {
+            let (number, column, line) = at.line();
+            let width = number.to_string().len().max(3);
+            // Never longer than the rest of the line: a table's span covers many.
+            let room = line.chars().count().saturating_sub(column - 1).max(1);
+            let span = at.source.text.get(at.start..at.end).map_or(1, |s| s.lines().next().unwrap_or("").chars().count());
+            let caret = "^".repeat(span.clamp(1, room));
+            out += &format!("\n{number:>width$} | {line}\n{:>width$} | {:>pad$}{caret}", "", "", pad = column - 1);
+        }
+        if let Some(help) = &self.help {
+            out += &format!("\n    = help: {help}");
+        }
+        out
+    }
+}
+
+impl std::error::Error for Fault {}
+
+impl Diagnostic for Fault {
+    fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
+        self.help.as_ref().map(|h| Box::new(h) as Box<dyn fmt::Display>)
+    }
+    fn source_code(&self) -> Option<&dyn SourceCode> {
+        self.at.as_ref().map(|at| &*at.source as &dyn SourceCode)
+    }
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        let at = self.at.as_ref()?;
+        let label = LabeledSpan::new(Some("here".to_owned()), at.start, at.end.saturating_sub(at.start));
+        Some(Box::new(std::iter::once(label)))
+    }
+}
+
+impl SourceCode for Source {
+    fn read_span<'a>(&'a self, span: &SourceSpan, before: usize, after: usize) -> Result<Box<dyn SpanContents<'a> + 'a>, MietteError> {
+        let part = self.text.read_span(span, before, after)?;
+        let name = self.path.display().to_string();
+        let (data, at, line, column, lines) = (part.data(), *part.span(), part.line(), part.column(), part.line_count());
+        Ok(Box::new(MietteSpanContents::new_named(name, data, at, line, column, lines)))
+    }
+}
+
+/// Every fault that was found.
+#[derive(Clone, Debug, Default, PartialEq, Eq, thiserror::Error, Diagnostic)]
 #[error("{} in the assets", if faults.len() == 1 { "a fault".to_owned() } else { format!("{} faults", faults.len()) })]
 pub struct AssetErrors {
-    /// In the order of the files.
+    /// In the order in which they were found.
     #[related]
     pub faults: Vec<Fault>,
 }
 
 impl AssetErrors {
-    /// Only one thing.
+    /// Only one.
     pub fn one(fault: Fault) -> Self {
         Self { faults: vec![fault] }
     }
@@ -89,55 +160,31 @@ impl AssetErrors {
         step.map_err(|e| self.faults.extend(e.faults)).ok()
     }
 
-    /// Adds a fault.
-    pub fn push(&mut self, fault: Fault) {
-        self.faults.push(fault);
+    /// One line for each, without excerpts: for a message on the screen.
+    pub fn lines(&self) -> String {
+        let line = |f: &Fault| f.help.as_ref().map_or_else(|| f.to_string(), |help| format!("{f} ({help})"));
+        self.faults.iter().map(line).collect::<Vec<_>>().join("\n")
     }
 
-    /// One line for each, without excerpts: for a message on the screen.
-    pub fn lines(&self) -> impl fmt::Display + '_ {
-        struct Lines<'a>(&'a [Fault]);
-        impl fmt::Display for Lines<'_> {
-            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                for fault in self.0 {
-                    writeln!(f, "{fault}")?;
-                    if let Some(help) = &fault.help {
-                        writeln!(f, "  {help}")?;
-                    }
-                }
-                Ok(())
-            }
-        }
-        Lines(&self.faults)
+    /// All of them in full, and their number.
+    pub fn text(&self) -> String {
+        let all: Vec<String> = self.faults.iter().map(Fault::text).collect();
+        format!("{}\n\n{self}", all.join("\n\n"))
     }
 }
 
 /// The name nearest to `wrong`, when it is near enough to have been meant.
 pub fn did_you_mean<'a>(wrong: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    known
-        .into_iter()
-        .map(|name| (strsim::normalized_damerau_levenshtein(wrong, name), name))
-        .filter(|(likeness, _)| *likeness >= 0.5)
-        .max_by(|a, b| a.0.total_cmp(&b.0))
-        .map(|(_, name)| name)
+    let best = known.into_iter().map(|k| (strsim::damerau_levenshtein(wrong, k), k)).min();
+    best.filter(|(distance, _)| *distance <= 2.max(wrong.chars().count() / 3)).map(|(_, name)| name)
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_fault_names_file_line_and_column() {
-        let text = "a = 1\nbb = nope\n";
-        let fault = Fault::at(Path::new("x/body.toml"), text, Some(11..15), "expected a number");
-        assert_eq!(fault.to_string(), "x/body.toml:2:6: expected a number");
-        let errors = AssetErrors::one(fault.help("write one"));
-        assert!(errors.lines().to_string().contains("write one"));
-    }
-
-    #[test]
-    fn near_names_are_offered_and_far_ones_are_not() {
-        assert_eq!(did_you_mean("radus_km", ["radius_km", "albedo"]), Some("radius_km"));
-        assert_eq!(did_you_mean("zzz", ["radius_km", "albedo"]), None);
+/// [`did_you_mean`] as help; else all that is known, where there is anything.
+pub fn nearest<'a>(written: &str, known: impl IntoIterator<Item = &'a str>) -> Option<String> {
+    let known: Vec<&str> = known.into_iter().collect();
+    match did_you_mean(written, known.iter().copied()) {
+        Some(name) => Some(format!("did you mean `{name}`?")),
+        None if known.is_empty() => None,
+        None => Some(format!("known here: {}", known.join(", "))),
     }
 }

@@ -1,28 +1,60 @@
-//! Assets: text files become validated values, or a list of everything that is wrong with them.
+//! Assets: text files that people write, checked and turned into what the World and the renderer use.
 //!
-//! - [`document`]: one TOML file, the overlay of mods, a place for every key
-//! - [`fault`]: what is wrong, where, what was expected, what to do
-//! - [`schema`]: the words of `system.toml` and `body.toml` · [`system`]: what they come to
-//! - [`reload`]: files that change while one flies
+//! # Folders
+//! ```text
+//! assets/systems/<system>/system.toml         name, description
+//! assets/systems/<system>/<body>/body.toml    one folder a body; its name is the body's key
+//! assets/maps/…                               maps that bodies name (also looked for beside the body's file)
+//! assets/ships/<ship>.toml                    ships
+//! assets/starts/<start>.toml                  where and when a flight begins
+//! ```
+//! # Mods
+//! A mod is a folder with the same layout, laid over the assets (`--mods DIR`, the last on top). A file at the same path replaces, a
+//! new one adds (a folder `systems/sol/vulcan/` with a `body.toml` is a new planet), and `body.patch.toml` changes only the keys
+//! that it holds: tables merge, values and lists are replaced. `syzygy check-assets DIR` tells everything that is wrong at once.
 //!
-//! Ships (`ships/*.toml`) and starts (`starts/*.toml`) speak the words of [`crate::world::ship::spec`] and
-//! [`crate::world::start`].
+//! # `body.toml`
+//! Every key ends in its unit. Angles in °, Julian dates in TDB, axes ICRF. There are no silent defaults: a key left out is
+//! either marked *optional* or an error.
+//!
+//! | table | keys |
+//! |---|---|
+//! | (top) | `name`, `parent` (key of the body it orbits; only the star has none), `gm_km3_s2`, `radius_km` (datum sphere: sea level), `albedo = [r, g, b]` (linear sRGB, 0 … 1) |
+//! | `[star]` | for the star only: `illuminance_at_1_au_lx` (Sun: 1.28e5), `colour = [r, g, b]` (linear sRGB, luminance 1) |
+//! | `[rotation]` | IAU form: `pole_ra_deg`, `pole_ra_deg_per_century`, `pole_dec_deg`, `pole_dec_deg_per_century`, `meridian_deg`, `meridian_deg_per_day`; *optional* `meridian_deg_per_century2` and lists of `[amplitude_deg, phase_deg, rate_deg_per_century]`: `pole_ra_terms` (sines), `pole_dec_terms` (cosines), `meridian_terms` (sines) |
+//! | `[orbit]` | `kind`, `epoch_jd_tdb`, and by kind: |
+//! | … `"barycentric"` | state from the system's barycentre: `position_km`, `velocity_km_s`, `with_moons` (true: of the body with its moons) |
+//! | … `"from_parent"` | the same from the parent's centre: `position_km`, `velocity_km_s` |
+//! | … `"mean"` | precessing ellipse: `semi_major_axis_km`, `eccentricity`, `inclination_deg`, `node_deg`, `node_deg_per_year`, `argument_deg`, `argument_deg_per_year`, `mean_anomaly_deg`, `mean_longitude_deg_per_day`, and the pole of the plane that the angles refer to: `plane_pole_ra_deg`, `plane_pole_dec_deg` |
+//! | `[air.column]` | *optional*, what drags: `kind = "us76"` (Earth) or `"hydrostatic"`; `drag_top_m`; hydrostatic also `temperature_k`, `pressure_pa`, `molar_mass_kg_mol`, `heat_capacity_ratio`, *optional* `lapse = [{ to_altitude_m, k_per_m }]`. Gravity is the body's own |
+//! | `[air.medium]` | what one sees: `top_altitude_m`, `ground_albedo`, one to four `[[air.medium.layers]]` with `scattering_per_m`, `absorption_per_m` (at density 1), `profile` (`{ kind = "exponential", scale_height_m }` or `{ kind = "tent", bottom_m, peak_m, top_m }`), `phase` (`{ kind = "rayleigh" }` or `{ kind = "cornette_shanks", g }`) |
+//! | `[relief]` | *optional* (giants and stars have none): `relief_max` (exaggeration from afar, 1 = never), `ground` (`"rock"`, `"regolith"`, `"living"`, `"ice"`), `water`; *optional* files `map`, `coast`, `colour`; *optional* tables `[relief.noise]`, `[relief.craters]`, `[relief.provinces]`: see [`engine::terrain::spec`] |
+//!
+//! # Here
+//! [`system`], [`ship`] and [`start`] load; [`reader`] takes keys out of a [`tree`] and gathers [`fault`]s; [`overlay`] finds and reads
+//! files; [`reload`] watches them. Not here: what a World does with it all.
 
-pub mod document;
+pub mod air;
+pub mod body;
 pub mod fault;
+pub mod overlay;
+pub mod reader;
+pub mod relief;
 pub mod reload;
-pub mod schema;
+pub mod ship;
+pub mod start;
 pub mod system;
+pub mod tree;
 
 pub use fault::{AssetErrors, Fault};
+pub use reload::Reloader;
 
 use crate::world::World;
 use crate::world::ship::spec::ShipSpec;
 use crate::world::start::StartSpec;
 use crate::world::system::System;
-use document::{Document, Overlay};
-use fault::did_you_mean;
-use std::path::{Path, PathBuf};
+use overlay::Overlay;
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// The assets folder with mods over it.
@@ -35,28 +67,22 @@ pub struct Assets {
 impl Assets {
     /// Assets in `dir`, with `mods` over them, the last on top.
     pub fn new(dir: PathBuf, mods: Vec<PathBuf>) -> Self {
-        Self { overlay: Overlay { roots: std::iter::once(dir).chain(mods).collect() } }
+        Self { overlay: Overlay::new(&dir, &mods) }
     }
 
     /// A system; `progress` hears how much is done, 0 … 1, and of what.
     pub fn system(&self, key: &str, progress: &(dyn Fn(f32, &str) + Sync)) -> Result<Arc<System>, AssetErrors> {
-        system::load(&self.overlay, key, progress)
+        system::load_system(&self.overlay, key, progress)
     }
 
     /// A ship.
     pub fn ship(&self, key: &str) -> Result<Arc<ShipSpec>, AssetErrors> {
-        let document = self.named("ships", key)?;
-        let spec: ShipSpec = document.parse()?;
-        let mut errors = AssetErrors::default();
-        for (key, what) in spec.faults() {
-            errors.push(document.fault_at(key, format!("{key}: {what}")));
-        }
-        errors.or(Arc::new(spec))
+        ship::load_ship(&self.overlay, key)
     }
 
     /// A start.
     pub fn start(&self, key: &str) -> Result<StartSpec, AssetErrors> {
-        self.named("starts", key)?.parse()
+        start::load_start(&self.overlay, key)
     }
 
     /// A World from a start.
@@ -69,96 +95,60 @@ impl Assets {
         self.world(key, &start, system, ship)
     }
 
-    /// A World from a start that was read.
+    /// A World from a start's words, when the system and the ship that they name are there already.
     pub fn world(&self, key: &str, start: &StartSpec, system: Arc<System>, ship: Arc<ShipSpec>) -> Result<World, AssetErrors> {
-        let document = self.named("starts", key)?;
         World::from_start(system, ship, start).map_err(|e| {
             let message = e.to_string();
             let place = message.split([' ', ':']).next().unwrap_or_default().to_owned();
-            AssetErrors::one(document.fault_at(&place, message))
+            match start::start_tree(&self.overlay, key) {
+                Ok(tree) => AssetErrors::one(Fault::at(&tree.place_of(&place), message)),
+                Err(errors) => errors,
+            }
         })
     }
 
     /// The starts there are, in the order of their names, readable or not.
     pub fn starts(&self) -> Vec<(String, Result<StartSpec, AssetErrors>)> {
-        self.names("starts").into_iter().map(|key| (key.clone(), self.start(&key))).collect()
+        self.overlay.names("starts", Some(".toml")).into_iter().map(|key| (key.clone(), self.start(&key))).collect()
     }
 
     /// The systems there are.
     pub fn systems(&self) -> Vec<String> {
-        let exists = |name: &String| self.overlay.find(&Path::new("systems").join(name).join("system.toml")).is_some();
-        self.overlay.entries(Path::new("systems")).into_iter().filter(exists).collect()
+        let exists = |name: &String| self.overlay.find(format!("systems/{name}/system.toml")).is_some();
+        self.overlay.names("systems", None).into_iter().filter(exists).collect()
     }
 
     /// The ships there are.
     pub fn ships(&self) -> Vec<String> {
-        self.names("ships")
+        self.overlay.names("ships", Some(".toml")).into_iter().collect()
     }
 
     /// Everything, checked: what `check-assets` does.
     pub fn check(&self) -> Result<(), AssetErrors> {
         let mut errors = AssetErrors::default();
+        let mut systems = std::collections::BTreeMap::new();
         for key in self.systems() {
-            errors.keep(self.system(&key, &|_, _| ()));
+            let system = errors.keep(self.system(&key, &|_, _| ()));
+            systems.insert(key, system);
         }
         for key in self.ships() {
             errors.keep(self.ship(&key));
         }
-        if errors.faults.is_empty() {
-            for key in self.names("starts") {
-                errors.keep(self.begin(&key, &|_, _| ()));
+        for (key, start) in self.starts() {
+            let Some(start) = errors.keep(start) else { continue };
+            let system = match systems.get(&start.system) {
+                Some(system) => system.clone(),
+                // Names a system that there is none of: the fault is told by the attempt.
+                None => errors.keep(self.system(&start.system, &|_, _| ())),
+            };
+            let ship = if self.ships().contains(&start.ship) { self.ship(&start.ship).ok() } else { errors.keep(self.ship(&start.ship)) };
+            if let (Some(system), Some(ship)) = (system, ship) {
+                errors.keep(self.world(&key, &start, system, ship));
             }
         }
         errors.or(())
     }
-
-    fn names(&self, folder: &str) -> Vec<String> {
-        let entries = self.overlay.entries(Path::new(folder)).into_iter();
-        entries.filter_map(|n| n.strip_suffix(".toml").filter(|n| !n.ends_with(".patch")).map(str::to_owned)).collect()
-    }
-
-    fn named(&self, folder: &str, key: &str) -> Result<Document, AssetErrors> {
-        let file = Path::new(folder).join(format!("{key}.toml"));
-        if self.overlay.find(&file).is_none() {
-            let known = self.names(folder);
-            let path = self.overlay.roots.first().map_or_else(|| file.clone(), |root| root.join(&file));
-            let fault = Fault::of_file(&path, format!("there is no `{key}` in {folder}"));
-            let near = did_you_mean(key, known.iter().map(String::as_str)).map(|n| format!("did you mean `{n}`? "));
-            return Err(AssetErrors::one(fault.help(format!("{}there are {}", near.unwrap_or_default(), known.join(", ")))));
-        }
-        Document::open(&self.overlay, &file)
-    }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use engine::orbit::BodyId;
-    use engine::space::Icrf;
-    use engine::time::SimTime;
-
-    fn shipped() -> Assets {
-        Assets::new(Path::new(env!("CARGO_MANIFEST_DIR")).join("../assets"), Vec::new())
-    }
-
-    #[test]
-    fn everything_shipped_is_sound() {
-        if let Err(errors) = shipped().check() {
-            panic!("{}", errors.lines());
-        }
-    }
-
-    #[test]
-    fn the_moon_stands_before_the_sun_at_greatest_eclipse() {
-        let system = shipped().system("sol", &|_, _| ()).unwrap();
-        let t = SimTime::from_jd_tdb(2_461_265.241_041_667);
-        let at = |key: &str| -> engine::space::Position<Icrf> { system.ephemeris.state(system.find(key).unwrap(), t).position };
-        let (to_sun, to_moon) = ((at("sun") - at("earth")).0, (at("moon") - at("earth")).0);
-        let angle = libm::acos(to_sun.normalize().dot(to_moon.normalize()));
-        // gamma 0.8977 Earth radii at the Moon's distance: 0.86 degrees.
-        assert!((angle.to_degrees() - 0.86).abs() < 0.1, "{}", angle.to_degrees());
-        assert!(system.body(BodyId(0)).soi_radius_m.is_infinite());
-        let moon = system.body(system.find("moon").unwrap());
-        assert!((6.0e7..7.0e7).contains(&moon.soi_radius_m), "{}", moon.soi_radius_m);
-    }
-}
+mod tests;

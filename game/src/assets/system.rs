@@ -1,355 +1,260 @@
-//! From a system's files to a [`System`]: ranges, references between bodies, maps, spheres of influence.
+//! A system from its folder: every body's file is read and checked, all faults are gathered, and only a system without any is built.
 
-use super::document::{Document, Overlay};
-use super::fault::{AssetErrors, did_you_mean};
-use super::schema::{BodyFile, OrbitTable, RotationTable, SystemFile, TermTable};
+use super::body::{BodySpec, read_body};
+use super::fault::{AssetErrors, At, Fault, nearest};
+use super::overlay::{Overlay, read_text};
+use super::reader::{Faults, Reader};
+use super::relief::load_maps;
+use super::tree::{Node, parse};
 use crate::world::system::{Air, Body, System};
-use engine::air::RangeError;
-use engine::air::density::Column;
-use engine::orbit::ephemeris::{Ephemeris, MeanOrbit, Orbit, Path as OrbitPath};
-use engine::orbit::rotation::{Spin, Term};
-use engine::orbit::{BodyId, State};
-use engine::space::relative::narrow3;
-use engine::space::{Position, Velocity};
-use engine::terrain::map::{ColourMap, CubeMap};
-use engine::terrain::relief::Maps;
-use engine::terrain::{Relief, spec::ReliefSpec};
-use engine::time::SimTime;
-use engine::units::{AU, DAY, DEG, KM, KM3_S2};
-use glam::{DVec3, Vec3};
+use engine::orbit::BodyId;
+use engine::orbit::ephemeris::{Ephemeris, Orbit, Path as OrbitPath};
+use engine::terrain::Relief;
+use glam::DVec3;
 use rayon::prelude::*;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Days of a Julian year.
-const YEAR: f64 = 365.25 * DAY;
+/// Bodies that a system may have.
+const BODIES_MAX: usize = 4096;
 
-struct Read {
-    key: String,
-    document: Document,
-    file: BodyFile,
+/// Loads `systems/<key>`; `progress` hears how much is done, 0 … 1, and of what.
+pub fn load_system(overlay: &Overlay, key: &str, progress: &(dyn Fn(f32, &str) + Sync)) -> Result<Arc<System>, AssetErrors> {
+    let faults = Faults::default();
+    let mut hash = blake3::Hasher::new();
+    let system = read(overlay, key, &faults, &mut hash, progress);
+    let faults = faults.into_inner();
+    match system {
+        Some(system) if faults.is_empty() => Ok(Arc::new(system)),
+        _ => Err(AssetErrors { faults }),
+    }
 }
 
-/// Reads a system; `progress` hears how much of it is done, 0 … 1.
-pub fn load(overlay: &Overlay, key: &str, progress: &(dyn Fn(f32, &str) + Sync)) -> Result<Arc<System>, AssetErrors> {
-    let folder = Path::new("systems").join(key);
-    let head = Document::open(overlay, &folder.join("system.toml"))?;
-    let system: SystemFile = head.parse()?;
-    let mut errors = AssetErrors::default();
-    let mut keys = system.bodies.clone();
-    for (index, body) in keys.iter().enumerate() {
-        if keys[..index].contains(body) {
-            errors.push(head.fault_at(&format!("bodies[{index}]"), format!("`{body}` stands in the list twice")));
+/// Reads a file with its patches into one tree; faults are written down.
+pub fn read_tree(overlay: &Overlay, relative: &str, what: &str, faults: &Faults, hash: &mut blake3::Hasher) -> Option<Node> {
+    let files = overlay.with_patches(relative);
+    if files.is_empty() {
+        let message = format!("the file is missing: expected {what}");
+        faults.borrow_mut().push(Fault::file(&overlay.expected(relative), message));
+    }
+    let mut tree: Option<Node> = None;
+    for file in files {
+        let source = match read_text(&file) {
+            Ok(source) => source,
+            Err(fault) => {
+                faults.borrow_mut().push(fault);
+                return None;
+            }
+        };
+        // Line ends are no difference: a checkout on Windows flies the same replays.
+        hash.update(source.text.replace("\r\n", "\n").as_bytes());
+        match (parse(&source), &mut tree) {
+            (Ok(node), Some(tree)) => tree.patch(node),
+            (Ok(node), none) => *none = Some(node),
+            (Err(errors), _) => {
+                faults.borrow_mut().extend(errors);
+                return None;
+            }
         }
     }
-    // A mod adds a body by adding its folder.
-    keys.extend(overlay.entries(&folder).into_iter().filter(|name| {
-        !system.bodies.contains(name) && overlay.roots[1..].iter().any(|root| root.join(&folder).join(name).join("body.toml").is_file())
-    }));
-    let epoch = SimTime::from_jd_tdb(system.epoch_jd_tdb);
-    check(&mut errors, &head, "epoch_jd_tdb", system.epoch_jd_tdb, -3.0e7, 4.0e7);
-    let mut read = Vec::new();
+    tree
+}
+
+fn read(
+    overlay: &Overlay,
+    key: &str,
+    faults: &Faults,
+    hash: &mut blake3::Hasher,
+    progress: &(dyn Fn(f32, &str) + Sync),
+) -> Option<System> {
+    let folder = format!("systems/{key}");
+    let fault = |f: Fault| faults.borrow_mut().push(f);
+    let top = read_tree(overlay, &format!("{folder}/system.toml"), "the system's name", faults, hash);
+    if top.is_none() && overlay.with_patches(&format!("{folder}/system.toml")).is_empty() {
+        let known = overlay.names("systems", None);
+        if let Some(last) = faults.borrow_mut().last_mut() {
+            last.help = nearest(key, known.iter().map(String::as_str));
+        }
+        return None;
+    }
+    let name = top.as_ref().map(|node| {
+        let r = Reader::new(node, faults);
+        let name = r.text("name");
+        r.maybe_text("description");
+        r.finish();
+        name
+    });
+    let mut specs = Vec::new();
+    let keys = overlay.names(&folder, None);
+    if keys.is_empty() || keys.len() > BODIES_MAX {
+        let message = format!("expected 1 to {BODIES_MAX} folders with a body.toml, found {}", keys.len());
+        fault(Fault::file(&overlay.expected(&folder), message));
+    }
+    let mut whole = true;
     for body in &keys {
-        let file = folder.join(body).join("body.toml");
-        let opened = Document::open(overlay, &file).and_then(|document| {
-            let file: BodyFile = document.parse()?;
-            Ok(Read { key: body.clone(), document, file })
-        });
-        read.extend(errors.keep(opened));
+        hash.update(body.as_bytes());
+        match read_tree(overlay, &format!("{folder}/{body}/body.toml"), "a file for the body of this folder", faults, hash) {
+            Some(node) => specs.push(read_body(body, Reader::new(&node, faults))),
+            None => whole = false,
+        }
     }
-    if read.is_empty() {
-        errors.push(head.fault_at("bodies", "a system needs at least a star"));
+    let order = order(&specs, &keys.iter().map(String::as_str).collect::<Vec<_>>(), faults)?;
+    if !whole {
+        return None;
     }
-    let mut errors = errors.or(()).err().unwrap_or_default();
-    let parents = parents(&mut errors, &read);
-    for body in &read {
-        check_body(&mut errors, body);
+    let specs: Vec<BodySpec> = order.into_iter().map(|i| specs[i].clone()).collect();
+    if !faults.borrow().is_empty() {
+        return None;
     }
-    let mut errors = errors.or(()).err().unwrap_or_default();
-    if !errors.faults.is_empty() {
-        return Err(errors);
-    }
-    let orbits: Vec<Orbit> = read.iter().zip(&parents).map(|(b, parent)| orbit(&b.file, *parent, epoch)).collect();
-    let ephemeris = Ephemeris::new(orbits).map_err(|e| AssetErrors::one(head.fault_at("bodies", e.to_string())))?;
     // Maps are most of the work, and independent of each other.
-    let done = std::sync::atomic::AtomicUsize::new(0);
-    let grounds: Vec<Result<Option<(Arc<Relief>, String)>, AssetErrors>> = read
+    let done = AtomicUsize::new(0);
+    let grounds: Vec<Ground> = specs
         .par_iter()
-        .map(|b| {
-            let ground = b.file.relief.as_ref().map(|spec| relief(overlay, &folder.join(&b.key), b, spec)).transpose();
-            let count = done.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1;
-            progress(count as f32 / read.len() as f32, &b.file.name);
+        .map(|s| {
+            let ground = ground(s, overlay, &format!("{folder}/{}", s.key));
+            let count = done.fetch_add(1, Ordering::Relaxed) + 1;
+            progress(count as f32 / specs.len() as f32, &s.name);
             ground
         })
         .collect();
-    let mut hasher = blake3::Hasher::new();
-    hasher.update(head.text.as_bytes());
-    let mut bodies = Vec::new();
-    for (index, ((b, ground), parent)) in read.iter().zip(grounds).zip(&parents).enumerate() {
-        hasher.update(b.key.as_bytes()).update(b.document.text.as_bytes());
-        let ground = errors.keep(ground).flatten();
-        if let Some((_, hash)) = &ground {
-            hasher.update(hash.as_bytes());
-        }
-        bodies.extend(errors.keep(body(b, index, *parent, ground.map(|g| g.0), &read, &ephemeris, epoch)));
+    let mut reliefs = Vec::new();
+    for ground in grounds {
+        hash.update(ground.hash.as_bytes());
+        faults.borrow_mut().extend(ground.faults);
+        reliefs.push(ground.relief);
     }
-    errors.or(Arc::new(System { key: key.to_owned(), name: system.name, bodies, ephemeris, hash: hasher.finalize().to_hex().to_string() }))
+    if !faults.borrow().is_empty() {
+        return None;
+    }
+    let hash = hash.finalize().to_hex().to_string();
+    build(key, name?, specs, reliefs, hash).map_err(|f| faults.borrow_mut().push(f)).ok()
 }
 
-fn check(errors: &mut AssetErrors, doc: &Document, key: &str, value: f64, low: f64, high: f64) {
-    if !(low..=high).contains(&value) {
-        errors.push(doc.fault_at(key, format!("{key} = {value}: expected a number from {low} to {high}")));
-    }
-}
-
-/// The parents as handles; a parent must stand before its child, and only the first body has none.
-#[allow(clippy::cast_possible_truncation)]
-fn parents(errors: &mut AssetErrors, read: &[Read]) -> Vec<Option<BodyId>> {
-    let position = |key: &str| read.iter().position(|b| b.key == key);
-    let mut parents = Vec::new();
-    for (index, body) in read.iter().enumerate() {
-        let parent = match &body.file.parent {
-            None if index == 0 => None,
-            None => {
-                errors.push(body.document.fault_at("name", "parent is missing: only the first body of the system, its star, has none"));
-                None
-            }
-            Some(name) => match position(name) {
-                Some(at) if at < index => Some(BodyId(at as u16)),
-                Some(_) => {
-                    let message = format!("the parent `{name}` must stand before `{}` in system.toml, and a body is not its own", body.key);
-                    errors.push(body.document.fault_at("parent", message));
-                    None
-                }
-                None => {
-                    let fault = body.document.fault_at("parent", format!("there is no body `{name}` in this system"));
-                    let near = did_you_mean(name, read.iter().map(|b| b.key.as_str()));
-                    errors.push(match near {
-                        Some(near) => fault.help(format!("did you mean `{near}`?")),
-                        None => fault.help(format!("bodies are {}", read.iter().map(|b| b.key.as_str()).collect::<Vec<_>>().join(", "))),
-                    });
-                    None
-                }
-            },
+/// The star first, then depth first: each body by its distance from its parent, its moons behind it. `None` where the tree
+/// of parents is broken, which is then written down.
+fn order(specs: &[BodySpec], folders: &[&str], faults: &Faults) -> Option<Vec<usize>> {
+    let before = faults.borrow().len();
+    let find = |key: &str| specs.iter().position(|s| s.key == key);
+    let mut roots = Vec::new();
+    for (i, s) in specs.iter().enumerate() {
+        let Some((parent, at)) = &s.parent else {
+            roots.push(i);
+            continue;
         };
-        parents.push(parent);
-    }
-    parents
-}
-
-fn check_body(errors: &mut AssetErrors, body: &Read) {
-    let (doc, f) = (&body.document, &body.file);
-    let mut range = |key: &str, value: f64, low: f64, high: f64| check(errors, doc, key, value, low, high);
-    range("radius_km", f.radius_km, 0.1, 1.0e8);
-    range("gm_km3_s2", f.gm_km3_s2, 1.0e-12, 1.0e15);
-    range("relief_max", f.relief_max, 1.0, 100.0);
-    for (i, a) in f.albedo.iter().enumerate() {
-        range(&format!("albedo[{i}]"), *a, 0.0, 1.0);
-    }
-    for (key, pair) in
-        [("pole_ra_deg", f.rotation.pole_ra_deg), ("pole_dec_deg", f.rotation.pole_dec_deg), ("meridian_deg", f.rotation.meridian_deg)]
-    {
-        for (i, value) in pair.iter().enumerate() {
-            range(&format!("rotation.{key}[{i}]"), *value, -1.0e6, 1.0e6);
+        if find(parent).is_none() && !folders.contains(&parent.as_str()) {
+            let message = format!("`parent` = \"{parent}\": expected the folder of another body of this system");
+            let others = folders.iter().copied().filter(|f| *f != s.key);
+            faults.borrow_mut().push(Fault::at(at, message).help(nearest(parent, others)));
+        }
+        // A walk of more steps than there are bodies goes round.
+        let mut at_body = Some(i);
+        for _ in 0..=specs.len() {
+            at_body = at_body.and_then(|b| specs[b].parent.as_ref()).and_then(|(p, _)| find(p));
+        }
+        if at_body.is_some() {
+            let message = format!("`parent` = \"{parent}\": the parents of `{}` go round in a circle: expected a way to the star", s.key);
+            faults.borrow_mut().push(Fault::at(at, message));
         }
     }
-    for (i, t) in f.rotation.terms.iter().enumerate() {
-        for (key, value) in [("ra_deg", t.ra_deg), ("dec_deg", t.dec_deg), ("meridian_deg", t.meridian_deg), ("phase_deg", t.phase_deg)] {
-            range(&format!("rotation.terms[{i}].{key}"), value, -720.0, 720.0);
-        }
-        range(&format!("rotation.terms[{i}].rate_deg_per_century"), t.rate_deg_per_century, -1.0e9, 1.0e9);
-    }
-    for (i, lx) in f.star.iter().flat_map(|s| s.illuminance_at_1_au_lx).enumerate() {
-        range(&format!("star.illuminance_at_1_au_lx[{i}]"), lx, 0.0, 1.0e9);
-    }
-    match &f.orbit {
-        OrbitTable::Barycentric { position_km, velocity_km_s, .. } | OrbitTable::Relative { position_km, velocity_km_s } => {
-            for i in 0..3 {
-                range(&format!("orbit.position_km[{i}]"), position_km[i], -1.0e12, 1.0e12);
-                range(&format!("orbit.velocity_km_s[{i}]"), velocity_km_s[i], -1.0e5, 1.0e5);
-            }
-        }
-        OrbitTable::Elements { epoch_jd_tdb, semi_major_axis_km, eccentricity, mean_motion_deg_per_day, .. } => {
-            range("orbit.epoch_jd_tdb", *epoch_jd_tdb, -3.0e7, 4.0e7);
-            range("orbit.semi_major_axis_km", *semi_major_axis_km, 1.0, 1.0e12);
-            range("orbit.eccentricity", *eccentricity, 0.0, 0.999);
-            range("orbit.mean_motion_deg_per_day", *mean_motion_deg_per_day, -1.0e6, 1.0e6);
-            for (key, angle) in f.orbit.angles() {
-                range(&format!("orbit.{key}"), angle, -720.0, 720.0);
+    // Who shines is the star; the others are at fault.
+    roots.sort_by_key(|i| specs[*i].intensity_cd.max_element() <= 0.0);
+    match roots.as_slice() {
+        [_] => {}
+        [] if specs.is_empty() => {}
+        [] => faults.borrow_mut().push(Fault::at(&specs[0].at, "every body has a `parent`: expected one body without, the star")),
+        [first, rest @ ..] => {
+            for i in rest {
+                let message = format!("no `parent`, as `{}` has none: expected only one body without, the star", specs[*first].key);
+                faults.borrow_mut().push(Fault::at(&specs[*i].at, message));
             }
         }
     }
-    if f.star.is_none() && f.parent.is_none() {
-        errors.push(doc.fault_at("name", "the star needs a [star] table with `illuminance_at_1_au_lx`"));
-    }
-}
-
-impl OrbitTable {
-    fn angles(&self) -> Vec<(&'static str, f64)> {
-        match self {
-            Self::Elements { pole_ra_deg, pole_dec_deg, inclination_deg, node_deg, periapsis_deg, mean_anomaly_deg, .. } => vec![
-                ("pole_ra_deg", *pole_ra_deg),
-                ("pole_dec_deg", *pole_dec_deg),
-                ("inclination_deg", *inclination_deg),
-                ("node_deg", *node_deg),
-                ("periapsis_deg", *periapsis_deg),
-                ("mean_anomaly_deg", *mean_anomaly_deg),
-            ],
-            _ => Vec::new(),
+    if let [root] = roots.as_slice() {
+        if specs[*root].intensity_cd.max_element() <= 0.0 {
+            faults.borrow_mut().push(Fault::at(&specs[*root].at, "missing table [star]: expected it in the body without a `parent`"));
         }
     }
+    if faults.borrow().len() > before {
+        return None;
+    }
+    let mut order = Vec::new();
+    let mut open: Vec<usize> = roots;
+    while let Some(i) = open.pop() {
+        order.push(i);
+        let mut children: Vec<usize> =
+            (0..specs.len()).filter(|c| specs[*c].parent.as_ref().is_some_and(|(p, _)| *p == specs[i].key)).collect();
+        children.sort_by(|a, b| distance(&specs[*b], &specs[i]).total_cmp(&distance(&specs[*a], &specs[i])));
+        open.extend(children);
+    }
+    Some(order)
 }
 
-fn orbit(file: &BodyFile, parent: Option<BodyId>, epoch: SimTime) -> Orbit {
-    let path = match &file.orbit {
-        OrbitTable::Barycentric { position_km, velocity_km_s, with_moons } => OrbitPath::Barycentric {
-            epoch,
-            state: State {
-                position: Position::new(DVec3::from(*position_km) * KM),
-                velocity: Velocity::new(DVec3::from(*velocity_km_s) * KM),
-            },
-            of_system: *with_moons,
-        },
-        OrbitTable::Relative { position_km, velocity_km_s } => OrbitPath::FromParent {
-            epoch,
-            state: State {
-                position: Position::new(DVec3::from(*position_km) * KM),
-                velocity: Velocity::new(DVec3::from(*velocity_km_s) * KM),
-            },
-        },
-        OrbitTable::Elements {
-            epoch_jd_tdb,
-            pole_ra_deg,
-            pole_dec_deg,
-            semi_major_axis_km,
-            eccentricity,
-            inclination_deg,
-            node_deg,
-            periapsis_deg,
-            mean_anomaly_deg,
-            mean_motion_deg_per_day,
-            node_rate_deg_per_year,
-            periapsis_rate_deg_per_year,
-        } => OrbitPath::Mean(MeanOrbit {
-            epoch: SimTime::from_jd_tdb(*epoch_jd_tdb),
-            semi_major_m: semi_major_axis_km * KM,
-            eccentricity: *eccentricity,
-            inclination_rad: inclination_deg * DEG,
-            node_rad: [node_deg * DEG, node_rate_deg_per_year * DEG / YEAR],
-            argument_rad: [periapsis_deg * DEG, periapsis_rate_deg_per_year * DEG / YEAR],
-            mean_anomaly_rad: mean_anomaly_deg * DEG,
-            mean_longitude_rate_rad_s: mean_motion_deg_per_day * DEG / DAY,
-            pole_ra_dec_rad: [pole_ra_deg * DEG, pole_dec_deg * DEG],
-        }),
+/// Distance from the parent, m: at the epoch, or the semi-major axis.
+fn distance(body: &BodySpec, parent: &BodySpec) -> f64 {
+    let place = |p: &OrbitPath| match p {
+        OrbitPath::Barycentric { state, .. } => state.position.0,
+        _ => DVec3::ZERO,
     };
-    Orbit { parent, gm_m3_s2: file.gm_km3_s2 * KM3_S2, path }
-}
-
-fn spin(table: &RotationTable) -> Spin {
-    let pair = |p: [f64; 2]| [p[0] * DEG, p[1] * DEG];
-    let terms = |amplitude: fn(&TermTable) -> f64| {
-        table
-            .terms
-            .iter()
-            .filter(|t| amplitude(t) != 0.0)
-            .map(|t| Term {
-                amplitude_rad: amplitude(t) * DEG,
-                phase_rad: t.phase_deg * DEG,
-                rate_rad_per_century: t.rate_deg_per_century * DEG,
-            })
-            .collect()
-    };
-    Spin {
-        pole_ra_rad: pair(table.pole_ra_deg),
-        pole_dec_rad: pair(table.pole_dec_deg),
-        meridian_rad: pair(table.meridian_deg),
-        pole_ra_terms: terms(|t| t.ra_deg),
-        pole_dec_terms: terms(|t| t.dec_deg),
-        meridian_terms: terms(|t| t.meridian_deg),
-        ..Spin::default()
+    match &body.path {
+        OrbitPath::Mean(m) => m.semi_major_m,
+        OrbitPath::FromParent { state, .. } => state.position.length(),
+        OrbitPath::Barycentric { state, .. } => (state.position.0 - place(&parent.path)).length(),
     }
 }
 
-/// The ground with its maps, and a hash of what collisions depend on.
-fn relief(overlay: &Overlay, folder: &Path, body: &Read, spec: &ReliefSpec) -> Result<(Arc<Relief>, String), AssetErrors> {
-    let mut errors = AssetErrors::default();
-    let mut hasher = blake3::Hasher::new();
-    let mut cube = |errors: &mut AssetErrors, name: &Option<String>| -> Option<Arc<CubeMap>> {
-        let (path, bytes) = errors.keep(overlay.binary(&folder.join(name.as_ref()?)))?;
-        hasher.update(&bytes);
-        let map = CubeMap::read(&bytes).map_err(|e| AssetErrors::one(super::fault::Fault::of_file(&path, e.to_string())));
-        errors.keep(map).map(Arc::new)
-    };
-    let height = cube(&mut errors, &spec.map);
-    let coast = cube(&mut errors, &spec.coast);
-    let colour = spec.colour.as_ref().and_then(|name| errors.keep(overlay.binary(&folder.join(name)).and_then(colour)));
-    let maps = Maps { height, coast, colour: colour.map(Arc::new) };
-    let built = Relief::new(body.file.radius_km * KM, spec.clone(), maps).map_err(|e| AssetErrors {
-        faults: e
-            .to_string()
-            .lines()
-            .map(|line| body.document.fault_at(line.split([' ', ':', '=']).next().unwrap_or("relief"), line))
-            .collect(),
-    });
-    // A map that could not be read is one fault, not two.
-    let ground = if errors.faults.is_empty() { errors.keep(built) } else { None };
-    match ground {
-        Some(ground) => Ok((Arc::new(ground), hasher.finalize().to_hex().to_string())),
-        None => Err(errors),
-    }
-}
-
-fn colour((path, bytes): (PathBuf, Vec<u8>)) -> Result<ColourMap, AssetErrors> {
-    let fault = |message: String| AssetErrors::one(super::fault::Fault::of_file(&path, message));
-    let mut decoder = jpeg_decoder::Decoder::new(bytes.as_slice());
-    let rgb = decoder.decode().map_err(|e| fault(format!("not a JPEG picture that can be read: {e}")))?;
-    let info = decoder.info().ok_or_else(|| fault("the JPEG picture has no header".to_owned()))?;
-    if info.pixel_format != jpeg_decoder::PixelFormat::RGB24 {
-        return Err(fault(format!("the picture is {:?}: expected 8-bit RGB", info.pixel_format)));
-    }
-    Ok(ColourMap { width: u32::from(info.width), height: u32::from(info.height), rgb })
-}
-
-fn body(
-    b: &Read,
-    index: usize,
-    parent: Option<BodyId>,
+/// What became of a body's `[relief]`.
+#[derive(Default)]
+struct Ground {
     relief: Option<Arc<Relief>>,
-    all: &[Read],
-    ephemeris: &Ephemeris,
-    epoch: SimTime,
-) -> Result<Body, AssetErrors> {
-    let f = &b.file;
-    let radius_m = f.radius_km * KM;
-    let ranges = |table: &'static str, errors: Vec<RangeError>| AssetErrors {
-        faults: errors.into_iter().map(|e| b.document.fault_at(&format!("{table}.{}", e.field), format!("{table}.{e}"))).collect(),
+    hash: String,
+    faults: Vec<Fault>,
+}
+
+fn ground(spec: &BodySpec, overlay: &Overlay, folder: &str) -> Ground {
+    let Some((relief, _)) = &spec.relief else { return Ground::default() };
+    let mut hash = blake3::Hasher::new();
+    let mut faults = Vec::new();
+    let maps = load_maps(relief, overlay, folder, &mut hash, &mut |f| faults.push(f));
+    if !faults.is_empty() {
+        return Ground { faults, ..Ground::default() };
+    }
+    match Relief::new(spec.radius_m, relief.clone(), maps) {
+        Ok(relief) => Ground { relief: Some(Arc::new(relief)), hash: hash.finalize().to_hex().to_string(), faults },
+        Err(e) => Ground { faults: vec![Fault::at(&spec.at, format!("{e}; expected a ground that can be built"))], ..Ground::default() },
+    }
+}
+
+fn build(key: &str, name: String, specs: Vec<BodySpec>, reliefs: Vec<Option<Arc<Relief>>>, hash: String) -> Result<System, Fault> {
+    let ids = |key: &str| specs.iter().position(|s| s.key == key).and_then(|i| u16::try_from(i).ok()).map(BodyId);
+    let parents: Vec<Option<BodyId>> = specs.iter().map(|s| s.parent.as_ref().and_then(|(p, _)| ids(p))).collect();
+    let orbits = specs.iter().zip(&parents).map(|(s, p)| Orbit { parent: *p, gm_m3_s2: s.gm_m3_s2, path: s.path.clone() });
+    let ephemeris = Ephemeris::new(orbits.collect()).map_err(|e| {
+        let at = specs.first().map(|s| s.at.clone());
+        Fault { path: at.as_ref().map_or_else(PathBuf::new, |a: &At| a.source.path.clone()), at, message: e.to_string(), help: None }
+    })?;
+    let soi = |i: usize| -> f64 {
+        let Some(parent) = parents[i] else { return f64::INFINITY };
+        let reach = ephemeris.reach(u16::try_from(i).map(BodyId).unwrap_or(BodyId(0)));
+        let a = 0.5 * (reach.nearest_m + reach.farthest_m);
+        // Laplace's sphere: a (m/M)^(2/5).
+        a * libm::pow(specs[i].gm_m3_s2 / specs[parent.index()].gm_m3_s2, 0.4)
     };
-    let mut errors = AssetErrors::default();
-    let air = f.air.as_ref().and_then(|air| {
-        let column = errors.keep(Column::new(&air.column).map_err(|e| ranges("air.column", e)));
-        let medium = errors.keep(air.medium.build(radius_m).map_err(|e| ranges("air.medium", e)));
-        Some(Air { column: column?, medium: medium? })
-    });
-    let gm = f.gm_km3_s2 * KM3_S2;
-    // Laplace: r = a (m/M)^(2/5), a the present distance from the parent.
-    #[allow(clippy::cast_possible_truncation)]
-    let soi_radius_m = parent.map_or(f64::INFINITY, |p| {
-        let distance = ephemeris.relative(BodyId(index as u16), p, epoch).position.length();
-        distance * libm::pow(f.gm_km3_s2 / all[p.index()].file.gm_km3_s2, 0.4)
-    });
-    let intensity = f.star.as_ref().map_or(DVec3::ZERO, |s| DVec3::from(s.illuminance_at_1_au_lx) * (AU * AU));
-    errors.or(Body {
-        key: b.key.clone(),
-        name: f.name.clone(),
-        parent,
-        gm_m3_s2: gm,
-        radius_m,
+    let soi: Vec<f64> = (0..specs.len()).map(soi).collect();
+    let bodies = specs.iter().zip(&parents).zip(reliefs).zip(soi).map(|(((s, parent), relief), soi_radius_m)| Body {
+        key: s.key.clone(),
+        name: s.name.clone(),
+        parent: *parent,
+        gm_m3_s2: s.gm_m3_s2,
+        radius_m: s.radius_m,
         soi_radius_m,
-        spin: spin(&f.rotation),
-        albedo: narrow3(DVec3::from(f.albedo)),
-        intensity_cd: if f.star.is_some() { narrow3(intensity) } else { Vec3::ZERO },
-        air,
+        spin: s.spin.clone(),
+        albedo: s.albedo,
+        intensity_cd: s.intensity_cd,
+        air: s.air.clone().and_then(|a| Some(Air { column: a.column?, medium: a.medium? })),
         relief,
-        relief_max: f.relief_max,
-    })
+        relief_max: s.relief.as_ref().map_or(1.0, |(_, max)| *max),
+    });
+    let bodies = bodies.collect();
+    Ok(System { key: key.to_owned(), name, bodies, ephemeris, hash })
 }

@@ -2,6 +2,7 @@
 //!
 //! Not here: the words themselves ([`crate::cli`]), the loop that modes share ([`crate::session`]).
 
+pub mod check_assets;
 pub mod headless;
 pub mod open;
 pub mod places;
@@ -12,7 +13,7 @@ pub mod stage;
 pub mod studio;
 pub mod window;
 
-use crate::cli::{CheckAssetsArgs, Cli, HeadlessArgs, Mode, Places, Probe, ShotArgs};
+use crate::cli::{Cli, HeadlessArgs, Mode, Places, Probe, ShotArgs};
 use crate::command::Commands;
 use crate::replay::{Log, LogError, Player, Recorder};
 use crate::save::{self, Slots};
@@ -87,7 +88,10 @@ pub fn run(cli: Cli) -> ExitCode {
         Mode::Headless(args) => headless(args).map(|()| ExitCode::SUCCESS),
         Mode::Replay(args) => Stage::set(&args.places).map(|stage| replay::run(args, &mut |state| stage.world(state))),
         Mode::Shot(args) => shot(args).map(|()| ExitCode::SUCCESS),
-        Mode::CheckAssets(args) => check_assets(args).map(|()| ExitCode::SUCCESS),
+        Mode::CheckAssets(args) => check_assets::run(args).map(|sound| {
+            println!("{sound}");
+            ExitCode::SUCCESS
+        }),
         Mode::Probe(probe) => probe::run(probe).map(|()| ExitCode::SUCCESS),
     };
     outcome.unwrap_or_else(|error| {
@@ -143,16 +147,6 @@ fn headless(args: &HeadlessArgs) -> Result<(), Error> {
     if let (Some(path), Some(recorder)) = (&args.record, recorder) {
         recorder.finish(&session.world).write(path, &crate::replay::recorder::header(&start))?;
     }
-    Ok(())
-}
-
-fn check_assets(args: &CheckAssetsArgs) -> Result<(), Error> {
-    let mut places = args.places.clone();
-    places.assets = args.dir.clone().or(places.assets);
-    let stage = Stage::set(&places)?;
-    stage.assets.check()?;
-    let a = &stage.assets;
-    println!("all sound: {} systems, {} ships, {} starts", a.systems().len(), a.ships().len(), a.starts().len());
     Ok(())
 }
 
