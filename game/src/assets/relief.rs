@@ -77,13 +77,7 @@ pub fn read_relief(r: Reader<'_>) -> (ReliefSpec, f64) {
 }
 
 /// Reads the files that a spec names. `folder` is the body's, relative to the assets. Each file's bytes go to `hash`, in order.
-pub fn load_maps(
-    spec: &ReliefSpec,
-    overlay: &Overlay,
-    folder: &str,
-    hash: &mut blake3::Hasher,
-    fault: &mut dyn FnMut(Fault),
-) -> Maps {
+pub fn load_maps(spec: &ReliefSpec, overlay: &Overlay, folder: &str, hash: &mut blake3::Hasher, fault: &mut dyn FnMut(Fault)) -> Maps {
     let mut bytes_of = |key: &'static str, name: &Option<String>| -> Option<(std::path::PathBuf, Vec<u8>)> {
         let name = name.as_ref()?;
         let path = [format!("{folder}/{name}"), format!("maps/{name}")].iter().filter_map(|p| inside(p)).find_map(|p| overlay.find(p));
@@ -112,8 +106,7 @@ pub fn load_maps(
     let height = cube(height);
     let coast = cube(coast);
     // Colour is seen, never collided with: it stays out of the hash.
-    let colour = colour
-        .and_then(|(path, bytes)| picture(&path, &bytes).map(Arc::new).map_err(|what| fault(Fault::file(&path, what))).ok());
+    let colour = colour.and_then(|(path, bytes)| picture(&path, &bytes).map(Arc::new).map_err(|what| fault(Fault::file(&path, what))).ok());
     Maps { height, coast, colour }
 }
 

@@ -61,13 +61,7 @@ pub fn read_tree(overlay: &Overlay, relative: &str, what: &str, faults: &Faults,
     tree
 }
 
-fn read(
-    overlay: &Overlay,
-    key: &str,
-    faults: &Faults,
-    hash: &mut blake3::Hasher,
-    progress: &(dyn Fn(f32, &str) + Sync),
-) -> Option<System> {
+fn read(overlay: &Overlay, key: &str, faults: &Faults, hash: &mut blake3::Hasher, progress: &(dyn Fn(f32, &str) + Sync)) -> Option<System> {
     let folder = format!("systems/{key}");
     let fault = |f: Fault| faults.borrow_mut().push(f);
     let top = read_tree(overlay, &format!("{folder}/system.toml"), "the system's name", faults, hash);

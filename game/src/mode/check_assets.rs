@@ -22,11 +22,8 @@ pub fn run(args: &CheckAssetsArgs) -> Result<String, Error> {
     };
     let own = Assets::new(root.clone(), Vec::new());
     let complete = !own.systems().is_empty() && system.as_ref().is_none_or(|s| own.systems().contains(s));
-    let assets = if complete {
-        own
-    } else {
-        Assets::new(places::assets(&args.places)?, mods.into_iter().chain(std::iter::once(root)).collect())
-    };
+    let assets =
+        if complete { own } else { Assets::new(places::assets(&args.places)?, mods.into_iter().chain(std::iter::once(root)).collect()) };
     Ok(check(&assets, system.as_deref())?)
 }
 

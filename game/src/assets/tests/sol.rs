@@ -120,7 +120,7 @@ fn bound_moons_face_their_planets() {
         ("deimos", 3.0),
         ("io", 1.5),
         ("europa", 2.2),
-        ("ganymede", 1.5),
+        ("ganymede", 2.6),
         ("callisto", 1.5),
         ("titan", 3.6),
     ] {
