@@ -95,7 +95,7 @@ impl World {
             // Weight on the gear (or on the belly) locks it.
             Action::Gear(_) if contact::stands(ship) => {}
             Action::Gear(down) => ship.gear_down = down,
-            Action::Warp(level) => self.warp_asked = level.min(WARP_QUARTERS.len() as u8 - 1),
+            Action::Warp(level) => self.warp_asked = level.min(warp::TOP_LEVEL),
             Action::Target(target) => {
                 self.target = target.filter(|t| t.body.index() < self.system.bodies.len());
                 if ship.guidance == Guidance::Land {

@@ -176,7 +176,7 @@ pub fn stirred(ship: &Ship, axes: Axes) -> bool {
     let translating = axes.right != 0 || axes.up != 0 || axes.forward != 0;
     let turning = axes.pitch != 0 || axes.yaw != 0 || axes.roll != 0;
     match ship.guidance {
-        Guidance::Manual => (ship.throttle > 0 && fuelled) || (translating && fuelled) || turning,
+        Guidance::Manual => ((ship.throttle > 0 || translating) && fuelled) || turning,
         Guidance::Hover | Guidance::VerticalSpeed { .. } => true,
         Guidance::Land => !ship.landing.as_ref().is_some_and(guidance::Landing::coasts),
     }

@@ -19,6 +19,9 @@ use engine::space::Centred;
 use engine::time::{SimTime, TICK_S, TICKS_PER_SECOND};
 use engine::units::{DAY, KM};
 
+/// The highest level of all.
+pub const TOP_LEVEL: u8 = 10;
+const _: () = assert!(WARP_QUARTERS.len() == TOP_LEVEL as usize + 1);
 /// Highest level while the ship is integrated: 4×.
 pub const FLY_LEVEL: u8 = 4;
 /// An event is approached so that at least this many session ticks remain at any level.
