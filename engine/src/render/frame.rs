@@ -32,6 +32,7 @@ pub fn draw(
     }
     let still = scene.adapt_s.is_none();
     let unexposed = still || !renderer.exposed;
+    let mut metered = FrameReport::default();
     match scene.exposure {
         AutoOr::Ev100(ev) => renderer.shared.write_exposure(gpu, &ExposureUniform::fixed(ev)),
         AutoOr::Auto { .. } if unexposed => {
@@ -41,7 +42,7 @@ pub fn draw(
             let lit = light(&mut f, passes)?;
             passes.exposure.record(&mut f, &lit);
             f.keep_exposure();
-            f.submit();
+            metered = f.submit();
         }
         AutoOr::Auto { .. } => {}
     }
@@ -66,7 +67,8 @@ pub fn draw(
     }
 
     f.keep_exposure();
-    let report = f.submit();
+    let mut report = f.submit();
+    report.add_earlier_round(&metered);
     renderer.end(gpu, report, still)
 }
 

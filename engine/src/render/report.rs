@@ -27,4 +27,14 @@ impl FrameReport {
     pub fn pass(&self, name: &str) -> Option<&PassReport> {
         self.passes.iter().find(|p| p.name == name)
     }
+
+    /// What ran in an earlier round of the same frame (to meter it), and so was not needed again, ran.
+    pub(super) fn add_earlier_round(&mut self, earlier: &Self) {
+        for pass in self.passes.iter_mut().filter(|p| !p.ran) {
+            if let Some(first) = earlier.pass(&pass.name).filter(|p| p.ran) {
+                pass.ran = true;
+                pass.reason.clone_from(&first.reason);
+            }
+        }
+    }
 }

@@ -5,10 +5,13 @@ use crate::picture::{self, Kind, PictureError};
 use crate::view::{Picture, Rig, snapshot};
 use crate::world::World;
 use engine::gpu::{BackendChoice, Gpu, GpuError};
-use engine::render::{FrameReport, OffscreenImage, RenderError, Renderer, RendererOptions, Target};
+use engine::render::{FrameReport, OffscreenImage, RenderError, Renderer, RendererOptions, StarCatalogue, Target};
 use engine::scene::Force;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
+
+/// The sky of stills: that of the build, so that a picture does not depend on where it was taken.
+const STARS: &[u8] = include_bytes!("../../../assets/stars/stars.bin");
 
 /// Why there is no picture.
 #[derive(Debug, Error, miette::Diagnostic)]
@@ -45,7 +48,11 @@ impl Studio {
     /// Opens a device and compiles the passes.
     pub fn open(backend: Option<Backend>, (width, height): (u32, u32), force: Force) -> Result<Self, StudioError> {
         let gpu = Gpu::headless(backend.map_or(BackendChoice::Auto, Backend::choice))?;
-        let renderer = Renderer::new(&gpu, RendererOptions { measure: true, ..RendererOptions::default() })?;
+        let mut renderer = Renderer::new(&gpu, RendererOptions { measure: true, ..RendererOptions::default() })?;
+        match StarCatalogue::parse(STARS) {
+            Ok(catalogue) => renderer.set_stars(&gpu, catalogue),
+            Err(e) => tracing::warn!("{e}"),
+        }
         let image = OffscreenImage::new(&gpu, [width, height]);
         Ok(Self { gpu, renderer, image, size_px: [width, height], force })
     }

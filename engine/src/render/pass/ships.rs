@@ -108,7 +108,7 @@ impl Ships {
         let module = shaders.load(&gpu.device, "pass/ships.wgsl")?;
         let buffers = ShipGeometry::buffers();
         let hull = PipelineKind { buffers: &buffers, cull: Some(wgpu::Face::Back), ..PipelineKind::opaque("ships", &module, &groups) };
-        let module = shaders.load(&gpu.device, "pass/flame.wgsl")?;
+        let module = shaders.load(&gpu.device, "pass/ships_flame.wgsl")?;
         let add = wgpu::BlendComponent { src_factor: wgpu::BlendFactor::One, dst_factor: wgpu::BlendFactor::One, ..Default::default() };
         let instance = wgpu::vertex_attr_array![3 => Float32x4, 4 => Float32x4, 5 => Float32x4, 6 => Float32x4, 7 => Float32x4];
         let buffers = [Some(wgpu::VertexBufferLayout {
