@@ -111,8 +111,11 @@ mod tests {
     /// Solar irradiance at 680, 550 and 440 nm, W m⁻² nm⁻¹.
     const IRRADIANCE: DVec3 = DVec3::new(1.474, 1.8504, 1.91198);
 
-    /// Rows of `sky_radiance_sample.csv`: height of the camera (km), view and sun (x, y, z), T at 680, 550, 440 nm, L1 likewise.
-    const ROWS: [(f64, [f64; 3], [f64; 3], [f64; 3], [f64; 3]); 3] = [
+    /// Height of the camera (km), view, sun, then T and L1 at three wavelengths.
+    type Row = (f64, [f64; 3], [f64; 3], [f64; 3], [f64; 3]);
+
+    /// Rows of `sky_radiance_sample.csv`.
+    const ROWS: [Row; 3] = [
         (
             0.1,
             [0.866_025_403_784_438_6, 0.0, 0.5],

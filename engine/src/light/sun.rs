@@ -21,7 +21,7 @@ mod tests {
     #[test]
     fn the_sun_from_the_earth() {
         // 1.28e5 lx at 1 AU needs 1.28e5 · AU² cd.
-        let intensity = Vec3::splat(1.28e5 * (AU * AU) as f32);
+        let intensity = Vec3::splat(crate::space::relative::narrow(1.28e5 * AU * AU));
         assert!((illuminance_lx(intensity, AU).x / 1.28e5 - 1.0).abs() < 1e-6);
         assert!((illuminance_lx(intensity, 2.0 * AU).x / 0.32e5 - 1.0).abs() < 1e-6);
         // IAU 2015 nominal solar radius 695,700 km: 959.23″.
