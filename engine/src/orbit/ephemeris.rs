@@ -272,7 +272,7 @@ impl Ephemeris {
     }
 
     /// A body from its parent's centre.
-    fn from_parent(&self, body: usize, t: SimTime) -> Pair {
+    fn about_parent(&self, body: usize, t: SimTime) -> Pair {
         let node = &self.nodes[body];
         let inside = node.parent.map_or((DVec3::ZERO, DVec3::ZERO), |p| self.chain(p, node.rank, t));
         let system = add(self.step(body, t), inside, 1.0);
@@ -341,7 +341,7 @@ impl Ephemeris {
         let mut sum = (DVec3::ZERO, DVec3::ZERO);
         let mut at = body;
         while Some(at) != stop {
-            sum = add(sum, self.from_parent(at, t), 1.0);
+            sum = add(sum, self.about_parent(at, t), 1.0);
             match self.nodes[at].parent {
                 Some(p) => at = p,
                 None => break,

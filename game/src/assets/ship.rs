@@ -14,7 +14,7 @@ use toml::de::{DeTable, DeValue, ValueDeserializer};
 /// Loads `ships/<key>.toml`, that of the last mod that has it.
 pub fn load_ship(overlay: &Overlay, key: &str) -> Result<Arc<ShipSpec>, AssetErrors> {
     let path = named(overlay, "ships", key)?;
-    let source = read_text(&path).map_err(|f| AssetErrors::one(f))?;
+    let source = read_text(&path).map_err(AssetErrors::one)?;
     let node = parse(&source).map_err(|faults| AssetErrors { faults })?;
     let faults = Faults::default();
     let table = DeTable::parse(&source.text).map_err(|e| AssetErrors::one(Fault::at(&node.at, e.to_string())))?;

@@ -36,10 +36,10 @@ fn read(key: &str, r: Reader<'_>) -> StartSpec {
         r.wrong("key", format!("`key` = \"{written}\": expected the file's name, \"{key}\""));
     }
     let utc = r.text("utc");
-    if let Err(what) = CivilTime::parse(&utc) {
-        if !utc.is_empty() {
-            r.wrong("utc", format!("`utc`: {what}"));
-        }
+    if let Err(what) = CivilTime::parse(&utc)
+        && !utc.is_empty()
+    {
+        r.wrong("utc", format!("`utc`: {what}"));
     }
     let spec = StartSpec {
         key: written,

@@ -164,10 +164,11 @@ fn order(specs: &[BodySpec], folders: &[&str], faults: &Faults) -> Option<Vec<us
             }
         }
     }
-    if let [root] = roots.as_slice() {
-        if specs[*root].intensity_cd.max_element() <= 0.0 {
-            faults.borrow_mut().push(Fault::at(&specs[*root].at, "missing table [star]: expected it in the body without a `parent`"));
-        }
+    if let [root] = roots.as_slice()
+        && specs[*root].intensity_cd.max_element() <= 0.0
+    {
+        let message = "missing table [star]: expected it in the body without a `parent`";
+        faults.borrow_mut().push(Fault::at(&specs[*root].at, message));
     }
     if faults.borrow().len() > before {
         return None;
