@@ -141,12 +141,16 @@ fn orbit(ui: &mut Ui, scene: &Scene<'_>) {
     let o = &r.orbit;
     ui.label(style::heading("Orbit"));
     row(ui, WIDTH, "Apoapsis", &format::length(o.apoapsis_m), style::TEXT);
-    row(ui, WIDTH, "    in", &format::duration(o.to_apoapsis_s), style::DIM);
+    // A circle has no apsides: their times would jump about.
+    let circle = o.eccentricity < 3e-5;
+    let time = |s: f64| if circle { format::NONE.to_owned() } else { format::duration(s) };
+    row(ui, WIDTH, "    in", &time(o.to_apoapsis_s), style::DIM);
     row(ui, WIDTH, "Periapsis", &format::length(o.periapsis_m), if o.periapsis_m < 0.0 { style::ACCENT } else { style::TEXT });
-    row(ui, WIDTH, "    in", &format::duration(o.to_periapsis_s), style::DIM);
+    row(ui, WIDTH, "    in", &time(o.to_periapsis_s), style::DIM);
     row(ui, WIDTH, "Period", &format::duration(o.period_s), style::TEXT);
     row(ui, WIDTH, "Inclination", &format!("{}°", format::number(o.inclination_rad.to_degrees(), 2)), style::TEXT);
     row(ui, WIDTH, "Eccentricity", &format::number(o.eccentricity, 4), style::TEXT);
+    row(ui, WIDTH, "Delta-v", &format!("{} km/s", format::number(r.delta_v_m_s / 1e3, 2)), style::TEXT);
     let Some(t) = &r.target else { return };
     ui.add_space(4.0);
     ui.label(style::heading("Target"));
@@ -197,14 +201,14 @@ fn guidance(ui: &mut Ui, r: &Readout, reply: &mut Reply) {
             Guidance::VerticalSpeed { cm_s } => Some(cm_s),
             _ => None,
         };
-        if style::toggle(ui, false, "▼").clicked() {
+        if style::toggle(ui, false, " − ").clicked() {
             reply.actions.push(Action::Guidance(climb(r, -1)));
         }
         let text = held.map_or_else(|| "V/S".to_owned(), |cm| format!("V/S {:+.0} m/s", f64::from(cm) / 100.0));
         if style::toggle(ui, held.is_some(), &text).clicked() && held.is_none() {
             reply.actions.push(Action::Guidance(climb(r, 0)));
         }
-        if style::toggle(ui, false, "▲").clicked() {
+        if style::toggle(ui, false, " + ").clicked() {
             reply.actions.push(Action::Guidance(climb(r, 1)));
         }
     });
@@ -250,6 +254,10 @@ fn middle(ui: &mut Ui, r: &Readout, state: &mut State, opacity: f32) {
         painter.text(bar.center_top() - Vec2::new(0.0, 9.0), Align2::CENTER_CENTER, top, style::words(10.0), style::DIM);
         painter.text(bar.center_bottom() + Vec2::new(0.0, 9.0), Align2::CENTER_CENTER, bottom, style::mono(11.0), style::TEXT);
     };
+    for side in [-1.0, 1.0] {
+        let back = tall(side * (BALL + 30.0)).expand2(Vec2::new(20.0, 17.0));
+        painter.rect_filled(back, 5, style::ground(opacity * 0.8));
+    }
     let throttle = r.throttle;
     bar(painter, tall(-BALL - 30.0), narrow(throttle), style::ACCENT);
     label(-BALL - 30.0, "THR", &format!("{} %", format::number(throttle * 100.0, 0)));
@@ -257,8 +265,6 @@ fn middle(ui: &mut Ui, r: &Readout, state: &mut State, opacity: f32) {
     let fraction = if full > 0.0 { left / full } else { 0.0 };
     bar(painter, tall(BALL + 30.0), narrow(fraction), if fraction < 0.05 { style::DANGER } else { style::GOOD });
     label(BALL + 30.0, "FUEL", &format!("{} %", format::number(fraction * 100.0, 0)));
-    let dv = format!("Δv {} km/s", format::number(r.delta_v_m_s / 1e3, 1));
-    painter.text(tall(BALL + 30.0).center_top() - Vec2::new(0.0, 23.0), Align2::CENTER_CENTER, dv, style::mono(10.0), style::DIM);
 }
 
 /// Warnings: the worst first, blinking slowly (1.25 Hz: well below what may trigger photosensitive epilepsy).

@@ -36,7 +36,7 @@ pub fn show(ctx: &egui::Context, bindings: &Bindings, opacity: f32, open: &mut b
                 }
             });
             ui.label(style::note(
-                "Mouse: drag turns the view, the wheel moves the camera. Everything can be rebound under Settings → Controls.",
+                "Mouse: drag turns the view, the wheel moves the camera. Everything can be rebound under Settings > Controls.",
             ));
         });
     });

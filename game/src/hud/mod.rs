@@ -241,7 +241,7 @@ impl Hud {
     }
 
     fn show_notices(&mut self, ctx: &egui::Context) {
-        let dt = ctx.input(|i| i.stable_dt).min(0.1);
+        let dt = ctx.input(|i| i.unstable_dt).min(2.0);
         for (_, left) in &mut self.notices {
             *left -= dt;
         }

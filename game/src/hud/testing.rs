@@ -147,6 +147,11 @@ pub fn run(mut show: impl FnMut(&egui::Context)) -> Vec<String> {
         for shape in &output.shapes {
             collect(&shape.shape, &mut texts);
         }
+        for text in &texts {
+            let font = super::style::words(12.0);
+            let missing: String = text.chars().filter(|c| !c.is_whitespace() && !ctx.fonts_mut(|f| f.has_glyph(&font, *c))).collect();
+            assert!(missing.is_empty(), "no font has `{missing}` of `{text}`");
+        }
         let _ = ctx.tessellate(output.shapes.clone(), 1.0);
         output.drop_without_applying_deltas();
     }

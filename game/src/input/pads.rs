@@ -45,10 +45,10 @@ macro_rules! elements {
 elements! {
     /// A gamepad button, by place (South is A on an Xbox pad, × on a PlayStation one).
     PadButton from Button {
-        South = South, "Pad A / ×";
-        East = East, "Pad B / ○";
-        North = North, "Pad Y / △";
-        West = West, "Pad X / □";
+        South = South, "Pad A";
+        East = East, "Pad B";
+        North = North, "Pad Y";
+        West = West, "Pad X";
         LeftTrigger = LeftTrigger, "Pad L1";
         RightTrigger = RightTrigger, "Pad R1";
         LeftTrigger2 = LeftTrigger2, "Pad L2";
@@ -58,10 +58,10 @@ elements! {
         Mode = Mode, "Pad Mode";
         LeftThumb = LeftThumb, "Pad L3";
         RightThumb = RightThumb, "Pad R3";
-        DPadUp = DPadUp, "Pad ↑";
-        DPadDown = DPadDown, "Pad ↓";
-        DPadLeft = DPadLeft, "Pad ←";
-        DPadRight = DPadRight, "Pad →";
+        DPadUp = DPadUp, "Pad up";
+        DPadDown = DPadDown, "Pad down";
+        DPadLeft = DPadLeft, "Pad left";
+        DPadRight = DPadRight, "Pad right";
     }
 }
 
@@ -96,10 +96,10 @@ impl PadAxis {
     /// What the player reads.
     pub const fn label(self) -> &'static str {
         match self {
-            Self::LeftStickX => "Left stick ↔",
-            Self::LeftStickY => "Left stick ↕",
-            Self::RightStickX => "Right stick ↔",
-            Self::RightStickY => "Right stick ↕",
+            Self::LeftStickX => "Left stick X",
+            Self::LeftStickY => "Left stick Y",
+            Self::RightStickX => "Right stick X",
+            Self::RightStickY => "Right stick Y",
             Self::LeftZ => "Left Z",
             Self::RightZ => "Right Z",
             Self::LeftTrigger => "Trigger L2",
