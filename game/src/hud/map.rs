@@ -205,7 +205,7 @@ fn level(albedo: f32, lit: f32) -> u8 {
 
 fn lit_disc(at: Pos2, radius: f32, light: DVec3, tint: &impl Fn(f32) -> Color32) -> Mesh {
     const AROUND: u32 = 72;
-    const RINGS: u32 = 12;
+    const RINGS: u32 = 32;
     let mut mesh = Mesh::default();
     for ring in 0..=RINGS {
         let rho = libm::sin(core::f64::consts::FRAC_PI_2 * f64::from(ring) / f64::from(RINGS));
