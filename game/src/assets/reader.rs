@@ -2,7 +2,7 @@
 //! stopping at the first. What was never asked for is unknown. After a fault a placeholder (NaN, an empty string) goes on, which
 //! nobody sees: a load with faults gives no result.
 
-use super::fault::{Fault, nearest};
+use super::fault::{Fault, did_you_mean, nearest};
 use super::tree::{Data, Node};
 use std::cell::RefCell;
 use std::ops::RangeInclusive;
@@ -237,7 +237,8 @@ impl<'a> Reader<'a> {
             let place = if self.name.is_empty() { String::new() } else { format!(" in [{}]", self.name) };
             let fault = Fault::at(&entry.key_at, format!("unknown key `{}`{place}: expected a key of the schema", entry.key));
             let free = asked.iter().copied().filter(|k| self.node.get(k).is_none());
-            let help = nearest(&entry.key, free).or_else(|| nearest(&entry.key, asked.iter().copied()));
+            let near = did_you_mean(&entry.key, free).map(|name| format!("did you mean `{name}`?"));
+            let help = near.or_else(|| nearest(&entry.key, asked.iter().copied()));
             self.fault(fault.help(help));
         }
     }
