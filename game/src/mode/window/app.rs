@@ -1,29 +1,27 @@
-//! The loop of the window: events in, ticks, one frame out.
+//! The loop of the window: events in, ticks, one frame out. [`asked`] is what menus and view controls ask for, [`drawing`] the frame.
 
-use super::canvas::{Canvas, Next};
-use super::clock::{Clock, bounded};
+mod asked;
+mod drawing;
+
+use super::canvas::Canvas;
+use super::clock::Clock;
 use super::flight::{self, Flight};
 use super::job::{Job, Outcome};
-use super::{Opening, picture_path, refuse};
+use super::{Opening, refuse};
 use crate::cli::{Backend, DEFAULT_START};
 use crate::command::Action;
-use crate::hud::{Hud, Lists, Reply, Request, Scene, Screen, loading, photo};
+use crate::hud::{Hud, Lists, Screen};
 use crate::input::controls::{Analogue, Control};
 use crate::input::{Focus, Input};
 use crate::mode::open::{self, Start};
 use crate::save::Slots;
-use crate::save::slots::Kind;
 use crate::settings::Settings;
 use crate::sound::{Sound, Volumes};
-use crate::view::{Picture, Rig, snapshot};
 use crate::world::World;
 use crate::world::readout::Situation;
 use engine::gpu::BackendChoice;
-use engine::render::{OffscreenImage, RenderError, Renderer, RendererOptions, Target};
-use engine::scene::{AutoOr, Force};
+use engine::render::{RenderError, Renderer, RendererOptions};
 use engine::space::relative::narrow;
-use engine::units::DEG;
-use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::Instant;
@@ -143,20 +141,6 @@ impl App {
         }));
     }
 
-    fn load(&mut self, path: Option<PathBuf>) {
-        let read = match path {
-            Some(path) => flight::read(&self.slots, &path),
-            None => self.slots.load_newest(None, &crate::save::decode).map_err(|e| e.to_string()),
-        };
-        match read {
-            Ok(loaded) => {
-                self.straight_in = true;
-                self.begin(Start::Save(Box::new(loaded)));
-            }
-            Err(e) => self.hud.message = Some(e),
-        }
-    }
-
     fn frame(&mut self, event_loop: &ActiveEventLoop) {
         let now = Instant::now();
         let dt_s = now.duration_since(self.last).as_secs_f64();
@@ -257,16 +241,6 @@ impl App {
         }
     }
 
-    fn quickload(&mut self) {
-        match self.slots.load_newest(Some(&Kind::Quick), &crate::save::decode) {
-            Ok(loaded) => {
-                self.straight_in = true;
-                self.begin(Start::Save(Box::new(loaded)));
-            }
-            Err(_) => self.hud.notice("There is no quick save yet"),
-        }
-    }
-
     fn look(&mut self, dt_s: f64) {
         let Some(flight) = &mut self.flight else { return };
         let rate = LOOK_RAD_PER_S * dt_s.min(0.1);
@@ -278,225 +252,6 @@ impl App {
         if zoom != 0.0 {
             flight.rig.zoom(libm::exp(zoom * 1.5 * dt_s.min(0.1)));
         }
-    }
-
-    /// A control of the view or the game.
-    fn control(&mut self, control: Control) {
-        use Control as C;
-        let screen = self.hud.screen;
-        let flip = |to: Screen| if screen == to { Screen::Flight } else { to };
-        match control {
-            C::Pause if self.hud.help => self.hud.help = false,
-            C::Pause if self.hud.message.is_some() => self.hud.message = None,
-            C::Pause => match screen {
-                Screen::Flight => self.hud.screen = Screen::Pause,
-                Screen::Main | Screen::Crash => {}
-                Screen::Starts | Screen::Saves | Screen::Options => {
-                    self.hud.screen = self.hud.back();
-                    self.keep();
-                }
-                _ => self.hud.screen = Screen::Flight,
-            },
-            C::Help => self.hud.help = !self.hud.help,
-            C::Map if screen.runs() => self.hud.screen = flip(Screen::Map),
-            C::SurfaceMap if screen.runs() => self.hud.screen = flip(Screen::Surface),
-            C::Photo if matches!(screen, Screen::Flight | Screen::Pause) => {
-                self.hud.photo.enter();
-                self.hud.screen = Screen::Photo;
-            }
-            C::Photo if screen == Screen::Photo => self.hud.screen = Screen::Flight,
-            C::HideHud if screen == Screen::Photo => self.hud.photo.panel = !self.hud.photo.panel,
-            C::HideHud => self.hud.hidden = !self.hud.hidden,
-            C::Camera => self.request(Request::NextCamera),
-            C::SavePicture => self.request(Request::Picture),
-            C::Quicksave => self.request(Request::Quicksave),
-            C::Quickload => self.request(Request::Quickload),
-            _ => {}
-        }
-    }
-
-    fn request(&mut self, request: Request) {
-        match request {
-            Request::NewFlight(key) => {
-                self.straight_in = true;
-                self.begin(Start::Named(key));
-            }
-            Request::Load(path) => self.load(Some(path)),
-            Request::Continue => self.load(None),
-            Request::SaveAs(name) => {
-                if let Some(flight) = &self.flight {
-                    let text = flight.save(&self.slots, &Kind::Named(name));
-                    self.hud.notice(text);
-                    self.lists = flight::lists(&self.opening.assets, &self.slots);
-                }
-            }
-            Request::Leave => {
-                self.auto_save();
-                self.hud.screen = Screen::Main;
-                self.lists = flight::lists(&self.opening.assets, &self.slots);
-            }
-            Request::Quit => {
-                self.keep();
-                self.quitting = true;
-            }
-            Request::Apply => self.apply(),
-            Request::Keep => self.keep(),
-            Request::Picture => {
-                let text = self.save_picture().unwrap_or_else(|e| format!("No picture was saved: {e}"));
-                self.hud.notice(text);
-            }
-            Request::NextCamera => {
-                if let Some(flight) = &mut self.flight {
-                    let name = flight.next_camera();
-                    self.hud.notice(name);
-                }
-            }
-            Request::Quicksave => self.clicked.push(Action::Quicksave),
-            Request::Quickload if self.hud.screen.runs() => self.clicked.push(Action::Quickload),
-            Request::Quickload => {
-                // The World stands still: let one tick take the session's own slot back, as if it had been pressed in flight.
-                self.hud.screen = Screen::Flight;
-                self.clicked.push(Action::Quickload);
-            }
-        }
-    }
-
-    fn apply(&mut self) {
-        if let Some(canvas) = &mut self.canvas {
-            canvas.apply(&self.settings.video);
-        }
-        self.input.bindings = self.settings.controls.clone();
-        if let Some(sound) = &mut self.sound {
-            sound.set_volumes(&volumes(&self.settings));
-        }
-    }
-
-    fn keep(&mut self) {
-        if let Err(e) = self.settings.save(&self.opening.data) {
-            self.hud.notice(e.to_string());
-            eprintln!("warning: {e}");
-        }
-    }
-
-    fn auto_save(&mut self) {
-        // The flight behind the main menu is a picture, not a flight.
-        if let Some(flight) = self.flight.as_ref().filter(|_| self.hud.screen != Screen::Main) {
-            let text = flight.save(&self.slots, &Kind::Auto);
-            if text.starts_with("Not") {
-                eprintln!("warning: {text}");
-            }
-            self.hud.notice(text);
-        }
-    }
-
-    /// The World that is drawn: the flight's own, or a copy with the clock moved, or a pose before the crash.
-    fn shown(&self) -> Option<World> {
-        let flight = self.flight.as_ref()?;
-        let world = &flight.session.world;
-        match self.hud.screen {
-            Screen::Photo if self.hud.photo.hours != 0.0 => Some(photo::moved_clock(world, self.hud.photo.hours)),
-            Screen::Crash if self.hud.crash.back_s > 0.0 => {
-                world.ship.ground.recorder.at(self.hud.crash.back_s).map(|pose| photo::posed(world, &pose))
-            }
-            _ => None,
-        }
-    }
-
-    fn rig(&self) -> Rig {
-        let mut rig = self.flight.as_ref().map(|f| f.rig.clone()).unwrap_or_default();
-        let photo = self.hud.screen == Screen::Photo;
-        let ev = self.settings.video.exposure_ev + if photo { self.hud.photo.ev } else { 0.0 };
-        rig.exposure = AutoOr::Auto { compensation_ev: ev };
-        rig.fov_y_rad = self.hud.photo.fov_deg.filter(|_| photo).unwrap_or(self.settings.video.fov_deg) * DEG;
-        rig
-    }
-
-    fn draw(&mut self, dt_s: f64) -> Result<(), RenderError> {
-        let (rig, copy) = (self.rig(), self.shown());
-        let (Some(canvas), Some(renderer), Some(flight)) = (&mut self.canvas, &mut self.renderer, &mut self.flight) else {
-            return Ok(());
-        };
-        let Next::Picture(texture) = canvas.next() else { return Ok(()) };
-        let view = texture.texture.create_view(&wgpu::TextureViewDescriptor::default());
-        let world = copy.as_ref().unwrap_or(&flight.session.world);
-        let covered = matches!(self.hud.screen, Screen::Map | Screen::Surface);
-        let scaled = canvas.scaled(self.settings.video.render_scale);
-        let size_px = scaled.as_ref().map_or_else(|| canvas.size(), |(image, _)| image.size);
-        let alpha = if self.hud.screen.runs() { self.clock.alpha() } else { 0.0 };
-        let picture = Picture { size_px, alpha, adapt_s: Some(bounded(dt_s)), force: Force::default() };
-        let scene = (!covered).then(|| snapshot(world, &rig, &picture).0);
-
-        let mut reply = Reply::default();
-        let readout = copy.as_ref().map_or_else(|| flight.readout.clone(), World::readout);
-        let (hud, lists, settings, input) = (&mut self.hud, &self.lists, &mut self.settings, &mut self.input);
-        let behind = scaled.as_ref().filter(|_| !covered).map(|(_, id)| *id);
-        canvas.paint(|ctx| {
-            if let Some(id) = behind {
-                let all = egui::Rect::from_min_max(egui::Pos2::ZERO, egui::Pos2::new(1.0, 1.0));
-                ctx.layer_painter(egui::LayerId::background()).image(id, ctx.content_rect(), all, egui::Color32::WHITE);
-            }
-            let told = Scene { readout: &readout, world, snapshot: scene.as_ref() };
-            let r = hud.show(ctx, Some(&told), lists, settings, input);
-            reply.actions.extend(r.actions);
-            reply.requests.extend(r.requests);
-        });
-        if let Some(sound) = &mut self.sound {
-            sound.update(&flight.readout, !self.hud.screen.runs());
-        }
-        match (&scene, &scaled) {
-            (Some(scene), Some((image, _))) => {
-                renderer.render(&canvas.gpu, scene, Target::Image(image), None)?;
-                canvas.draw_alone(&view);
-            }
-            (Some(scene), None) => {
-                canvas.painter.alone = false;
-                let target = Target::Surface { view: &view, format: canvas.format(), size: canvas.size() };
-                renderer.render(&canvas.gpu, scene, target, Some(&mut canvas.painter))?;
-            }
-            (None, _) => canvas.draw_alone(&view),
-        }
-        canvas.window.pre_present_notify();
-        canvas.gpu.queue.present(texture);
-        self.revived = false;
-        self.clicked.extend(reply.actions);
-        for request in reply.requests {
-            self.request(request);
-        }
-        Ok(())
-    }
-
-    fn draw_loading(&mut self) {
-        let Some(canvas) = &mut self.canvas else { return };
-        let part = |done: bool, job: Option<(f32, &str)>| if done { 1.0 } else { job.map_or(0.0, |(f, _)| f) };
-        let pipelines = self.pipelines.as_ref().map(|j| (j.fraction, j.what.as_str()));
-        let world = self.world.as_ref().map(|j| (j.fraction, j.what.as_str()));
-        let fraction = 0.5 * (part(self.renderer.is_some(), pipelines) + part(self.flight.is_some(), world));
-        let what = world.or(pipelines).map_or("", |(_, what)| what).to_owned();
-        let Next::Picture(texture) = canvas.next() else { return };
-        let view = texture.texture.create_view(&wgpu::TextureViewDescriptor::default());
-        canvas.paint(|ctx| loading::show(ctx, fraction, &what));
-        canvas.draw_alone(&view);
-        canvas.window.pre_present_notify();
-        canvas.gpu.queue.present(texture);
-    }
-
-    fn save_picture(&mut self) -> Result<String, String> {
-        let (rig, copy) = (self.rig(), self.shown());
-        let (Some(canvas), Some(renderer), Some(flight)) = (&self.canvas, &mut self.renderer, &self.flight) else {
-            return Err("nothing is drawn yet".to_owned());
-        };
-        let world = copy.as_ref().unwrap_or(&flight.session.world);
-        let image = OffscreenImage::new(&canvas.gpu, canvas.size());
-        let picture = Picture { size_px: image.size, alpha: 0.0, adapt_s: None, force: Force::default() };
-        let (scene, _) = snapshot(world, &rig, &picture);
-        renderer.render(&canvas.gpu, &scene, Target::Image(&image), None).map_err(|e| e.to_string())?;
-        let pixels = image.read_rgba8(&canvas.gpu).map_err(|e| e.to_string())?;
-        let path = picture_path(&self.opening.data, world.time);
-        if let Some(dir) = path.parent() {
-            std::fs::create_dir_all(dir).map_err(|e| format!("{}: {e}", dir.display()))?;
-        }
-        crate::picture::write_png(&path, image.size[0], image.size[1], &pixels).map_err(|e| e.to_string())?;
-        Ok(format!("Picture saved: {}", path.display()))
     }
 
     /// After a frame that was not drawn: a lost device is opened anew once; anything else ends the game, the flight kept.

@@ -104,7 +104,7 @@ impl Canvas {
     }
 
     /// The next picture to draw into; a surface that is outdated or lost is set up again.
-    pub fn next(&mut self) -> Next {
+    pub fn acquire(&mut self) -> Next {
         use wgpu::CurrentSurfaceTexture as Now;
         if self.window.is_minimized() == Some(true) {
             return Next::Skip;
