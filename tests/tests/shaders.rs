@@ -4,6 +4,7 @@
 use engine::gpu::ShaderLibrary;
 use engine::render::pass::sky_probe::{ProbeLight, ProbeRay};
 use engine::scene::gpu_data as rust;
+use engine::scene::gpu_terrain as ground;
 use wgpu::naga::{Module, TypeInner};
 
 /// Name, offset, size.
@@ -103,6 +104,22 @@ fn mirrored_structs_have_the_layout_of_their_twins() {
         ),
         ("lib/medium.wgsl", "Airs", fields!(rust::AirsUniform { list })),
         ("pass/sky.wgsl", "Sky", fields!(rust::SkyUniform { order, counts })),
+        ("lib/height.wgsl", "Octave", fields!(ground::OctaveUniform { cell_m, weight, flat_floor, density, seed, pad0, pad1, pad2 })),
+        ("lib/height.wgsl", "MapShape", fields!(ground::MapShapeUniform { bits, scale, offset, pad })),
+        (
+            "pass/tile_heights.wgsl",
+            "ReliefParams",
+            fields!(ground::ReliefParamsUniform { counts, noise, province, height_map, coast_map, octaves }),
+        ),
+        ("lib/tile.wgsl", "TileFrame", fields!(ground::TileFrameUniform { centre, tangent })),
+        ("pass/tile_heights.wgsl", "Job", fields!(ground::JobUniform { key, place, frame })),
+        ("pass/tile_heights.wgsl", "Lattice", fields!(ground::LatticeUniform { cell, fade, fraction, fade_coarse })),
+        (
+            "pass/terrain.wgsl",
+            "Tile",
+            fields!(ground::TileUniform { frame, centre, key, morph, near_cell, near_fraction, far_cell, far_fraction }),
+        ),
+        ("lib/ground.wgsl", "Paint", fields!(ground::PaintUniform { kind, province, shifts, seeds })),
         ("pass/exposure.wgsl", "Meter", fields!(rust::MeterUniform { range, trim, limit })),
     ];
     for (file, name, (fields, size)) in twins {

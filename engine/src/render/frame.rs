@@ -88,6 +88,11 @@ fn light(f: &mut FrameContext<'_>, passes: &mut Passes) -> Result<wgpu::TextureV
     let skip = passes.air_tables.skip(f.scene);
     let air = if f.runs("air_tables", skip) { passes.air_tables.record(f) } else { passes.air_tables.values() };
 
+    let skip = passes.terrain.plan(f.gpu, f.scene, f.maps);
+    if f.runs("tile_heights", skip) {
+        passes.terrain.record_heights(f);
+    }
+
     let skip = passes.shadow.skip(f.scene);
     let shadow = if f.runs("shadow", skip) { passes.shadow.record(f, &mut passes.ship_geometry) } else { passes.no_shadow.clone() };
 
@@ -96,6 +101,11 @@ fn light(f: &mut FrameContext<'_>, passes: &mut Passes) -> Result<wgpu::TextureV
     let skip = passes.smooth_body.skip(f.scene);
     if f.runs("smooth_body", skip) {
         passes.smooth_body.record(f, &light);
+    }
+
+    let skip = passes.terrain.skip(f.scene);
+    if f.runs("terrain", skip) {
+        passes.terrain.record(f, &light);
     }
 
     let skip = passes.ships.skip(f.scene);

@@ -90,6 +90,11 @@ impl MapStore {
         MapSet { albedo: a, night: n, group, has_albedo: albedo.is_some() }
     }
 
+    /// Uploads maps that the caller keeps.
+    pub fn make(&self, gpu: &Gpu, albedo: Option<&ColourMap>, night: Option<&ColourMap>) -> MapSet {
+        Self::set(gpu, &self.layout, &self.sampler, albedo, night)
+    }
+
     /// Uploads the maps of a body, replacing what it had.
     pub fn register(&mut self, gpu: &Gpu, id: u16, maps: &BodyMaps) -> Result<(), RenderError> {
         for (name, map) in [("albedo", &maps.albedo), ("night", &maps.night)] {

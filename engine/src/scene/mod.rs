@@ -4,6 +4,7 @@
 
 pub mod camera;
 pub mod gpu_data;
+pub mod gpu_terrain;
 pub mod snapshot;
 
 pub use camera::Camera;

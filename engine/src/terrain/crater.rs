@@ -93,7 +93,7 @@ pub fn crater_octave(o: &CraterOctave, radius_m: f64, cell: IVec3, fraction: DVe
             continue;
         }
         let wear = unit16(h3 >> 16);
-        let depth = 2.0 * radius * o.cell_m * o.depth_ratio * (0.2 + 0.8 * wear * wear) * (1.0 - smooth(SLAB_FADE, SLAB, e.abs()));
+        let depth = 2.0 * radius * o.cell_m * o.depth_ratio * (0.3 + 0.7 * wear * wear) * (1.0 - smooth(SLAB_FADE, SLAB, e.abs()));
         height += depth * profile(t, o.flat);
     }
     height

@@ -54,7 +54,8 @@ pub struct ColourMap {
 }
 
 impl Mip {
-    fn stride(&self) -> usize {
+    /// Nodes along a row, border included.
+    pub fn stride(&self) -> usize {
         self.cells + 1 + 2 * BORDER
     }
     /// Position in `nodes` of node `(x, y)`, each −BORDER … cells + BORDER.

@@ -19,6 +19,8 @@ use std::sync::Arc;
 pub const ERROR_PER_QUAD: f64 = 0.125;
 /// Least split distance, in tile edges, for which morphing closes all cracks.
 pub const SPLIT_MIN: f64 = 3.3;
+/// Coarsest level drawn: a quad then bulges 30 m over its chord on the Earth, too little for the air above it to show.
+pub const LEVEL_MIN: u8 = 3;
 /// Most tiles of one set; where more are wanted, the error allowed is raised.
 pub const TILES_MAX: usize = 1400;
 
@@ -88,7 +90,7 @@ impl Walk<'_> {
         if key.level > 0 && (self.hidden(to, reach, lift + margin) || self.aside(to, reach)) {
             return;
         }
-        if key.level < r.max_level() && distance < self.split * edge {
+        if key.level < r.max_level() && (key.level < LEVEL_MIN || distance < self.split * edge) {
             for child in key.children() {
                 self.visit(child);
             }
@@ -165,7 +167,7 @@ mod tests {
             let distance = (key.centre() * relief.radius_m - set.camera_m).length();
             assert!(distance + 1.2 * set.edge_m(key.level) > set.split_tiles * set.edge_m(key.level) || key.level == relief.max_level());
         }
-        assert!(select(&relief, &view(6e7)).tiles.len() < 120);
+        assert!(select(&relief, &view(6e7)).tiles.len() < 384);
     }
 
     #[test]

@@ -6,7 +6,7 @@
 //! height; `p` without a map) and `T = Σ gᵒ fₒ wₒ sₒ` the noise, where `sₒ` mixes gradient noise with its ridge, `wₒ` follows the sum so
 //! far (heights are rougher than valleys, after the hybrid multifractal of [Musgrave 1994, ch. 16 of "Texturing and Modeling"]):
 //! ```text
-//! z = b + (plain + (amplitude − plain) r) T + (0.35 + 0.65 p) craters
+//! z = b + (plain + (amplitude − plain) r) T + (0.35 + 0.65 p) craters         the factor of T at most plain + 1.6 b where there is a coast
 //! h = z                                                     without a coast
 //! h = ±½ (√(z² + k²) ± z) ramp(±s)                          with a coast at signed distance s = map + wobble T (+ on land)
 //! ```
@@ -27,15 +27,17 @@ use std::sync::Arc;
 /// Most octaves of noise.
 pub const NOISE_MAX: usize = 20;
 /// Most octaves of craters.
-pub const CRATER_MAX: usize = 18;
+pub const CRATER_MAX: usize = 34;
 /// Octaves of the province noise.
-pub const PROVINCES: usize = 4;
+pub const PROVINCES: usize = 7;
 /// Samples along a tile's edge, as a power of two.
 pub const SAMPLE_BITS: u32 = 6;
 /// Width of the beach and shelf over which heights grow from the coast, m.
 pub const RAMP_M: f64 = 8000.0;
 /// Softness of the split into land and sea, m.
 pub const SOFT_M: f64 = 20.0;
+/// Noise on land is at most this many times the map's height, so that valleys end above the sea instead of in plates of it.
+pub const VALLEY: f64 = 1.6;
 /// How far the noise moves the coast, m.
 pub const WOBBLE_M: f64 = 1500.0;
 /// Slope of the map at which the ground is fully rough.
@@ -74,6 +76,8 @@ pub struct Maps {
     pub coast: Option<Arc<CubeMap>>,
     /// Colour.
     pub colour: Option<Arc<ColourMap>>,
+    /// Lights at night.
+    pub night: Option<Arc<ColourMap>>,
 }
 
 /// One octave of noise.
@@ -126,6 +130,9 @@ fn edge_m(radius_m: f64) -> f64 {
 
 /// Weight of a feature of `wave_m` where samples lie `spacing_m` apart: 0 at three samples a wave, 1 from six.
 pub fn fade(wave_m: f64, spacing_m: f64) -> f64 {
+    if wave_m >= 6.0 * spacing_m {
+        return 1.0;
+    }
     (libm::log2(wave_m / spacing_m) - libm::log2(3.0)).clamp(0.0, 1.0)
 }
 
@@ -186,7 +193,7 @@ impl Relief {
                     seed: c.seed.wrapping_add(index.wrapping_mul(977)).wrapping_add(500_009),
                     offset: lattice_offset(index + 64, c.seed),
                 });
-                cell_m *= 0.5;
+                cell_m *= core::f64::consts::FRAC_1_SQRT_2;
             }
         }
         relief.spec = spec;
@@ -317,7 +324,11 @@ impl Relief {
                 let (c, frac) = split(at / o.cell_m + o.offset);
                 sum += o.weight * f * shaped(gradient_noise(c, frac, o.seed), n) * (0.5 + sum).clamp(0.2, 1.2);
             }
-            z += (n.plain_amplitude_m + (n.amplitude_m - n.plain_amplitude_m) * rough) * sum;
+            let mut amplitude = n.plain_amplitude_m + (n.amplitude_m - n.plain_amplitude_m) * rough;
+            if coast.is_some() {
+                amplitude = amplitude.min(n.plain_amplitude_m + VALLEY * base.max(0.0));
+            }
+            z += amplitude * sum;
         }
         let mut pits = 0.0;
         for o in &self.craters {

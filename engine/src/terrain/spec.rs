@@ -38,7 +38,7 @@ pub struct NoiseSpec {
     pub seed: u32,
 }
 
-/// Impact craters; each octave has half the size and four times the number of the one before (cumulative slope −2).
+/// Impact craters; each octave has 0.71 times the size and twice the number of the one before (cumulative slope −2).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CraterSpec {
@@ -88,9 +88,12 @@ pub struct ReliefSpec {
     /// File of a cube map of the distance to the coast, m, positive on land (`.cube`); needs `water`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub coast: Option<String>,
-    /// File of a picture of the body's colour, equirectangular, longitude −180° at the left, north up.
+    /// File of a picture of the body's colour, equirectangular, longitude −180° at the left, north up (drawn by the renderer).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub colour: Option<String>,
+    /// The same of its lights at night.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub night: Option<String>,
     /// Fractal detail.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub noise: Option<NoiseSpec>,

@@ -61,6 +61,7 @@ pub fn read_relief(r: Reader<'_>) -> (ReliefSpec, f64) {
         map: r.maybe_text("map"),
         coast: r.maybe_text("coast"),
         colour: r.maybe_text("colour"),
+        night: r.maybe_text("night"),
         noise,
         craters,
         provinces,
@@ -98,6 +99,7 @@ pub fn load_maps(spec: &ReliefSpec, overlay: &Overlay, folder: &str, hash: &mut 
     let height = bytes_of("map", &spec.map);
     let coast = bytes_of("coast", &spec.coast);
     let colour = bytes_of("colour", &spec.colour);
+    let night = bytes_of("night", &spec.night);
     let mut cube = |file: Option<(std::path::PathBuf, Vec<u8>)>| -> Option<Arc<CubeMap>> {
         let (path, bytes) = file?;
         hash.update(&bytes);
@@ -106,8 +108,12 @@ pub fn load_maps(spec: &ReliefSpec, overlay: &Overlay, folder: &str, hash: &mut 
     let height = cube(height);
     let coast = cube(coast);
     // Colour is seen, never collided with: it stays out of the hash.
-    let colour = colour.and_then(|(path, bytes)| picture(&path, &bytes).map(Arc::new).map_err(|what| fault(Fault::file(&path, what))).ok());
-    Maps { height, coast, colour }
+    let mut seen = |file: Option<(std::path::PathBuf, Vec<u8>)>| {
+        let (path, bytes) = file?;
+        picture(&path, &bytes).map(Arc::new).map_err(|what| fault(Fault::file(&path, what))).ok()
+    };
+    let (colour, night) = (seen(colour), seen(night));
+    Maps { height, coast, colour, night }
 }
 
 /// A relative path with its `..` taken out; `None` where it leads out of the assets.

@@ -8,19 +8,23 @@ use crate::command::{WARP_ONE, WARP_QUARTERS};
 use crate::world::World;
 use crate::world::eclipse::{self, Sky};
 use crate::world::ship::Rigid;
-use crate::world::system::System;
+use crate::world::system::{self, System};
 use engine::orbit::{BodyId, State};
 use engine::scene::{Body, Camera, Force, Occluder, Ship, Snapshot, Star, Surface};
 use engine::space::relative::{narrow, narrow3, rotation};
 use engine::space::{Fixed, Icrf, Rotation};
-use engine::terrain::{Relief, TileSet};
+use engine::terrain::{Relief, TileSet, View, select};
 use engine::time::TICK_S;
 use glam::{DQuat, DVec3};
+use std::sync::Arc;
 
 /// Nearest thing that can be seen, m.
 const NEAR_M: f32 = 0.1;
 /// Bodies whose disc has a radius of fewer pixels than this are drawn smooth, without tiles.
 const TILES_FROM_PX: f64 = 6.0;
+
+/// How far the drawn ground may depart from the true one, pixels.
+const TILE_ERROR_PX: f64 = 1.0;
 
 /// What the picture asks for, beyond the World and the rig.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -115,7 +119,9 @@ impl Stage<'_> {
         let radius_px = body.radius_m / distance.max(body.radius_m) / f64::from(self.camera.pixel_rad());
         let icrf_from_fixed = self.sky.axes(self.system, id);
         let surface = match &body.relief {
-            Some(relief) if radius_px >= TILES_FROM_PX => Surface::Tiles(tiles(relief, -centre, icrf_from_fixed, self.camera)),
+            Some(relief) if radius_px >= TILES_FROM_PX => {
+                Surface::Tiles(tiles(body, relief, -centre, icrf_from_fixed, self.eye, self.camera))
+            }
             _ => Surface::Smooth,
         };
         let shell = body.radius_m + body.air.as_ref().map_or(0.0, |a| a.medium.top_altitude_m);
@@ -144,10 +150,26 @@ impl Stage<'_> {
     }
 }
 
-/// The tiles of one body for this camera.
-fn tiles(relief: &Relief, camera: DVec3, icrf_from_fixed: Rotation<Icrf, Fixed>, lens: &Camera) -> TileSet {
-    let _ = (relief, camera, icrf_from_fixed, lens);
-    TileSet::default()
+/// The tiles of one body for this camera, `camera` metres from its centre.
+fn tiles(
+    body: &system::Body,
+    relief: &Arc<Relief>,
+    camera: DVec3,
+    icrf_from_fixed: Rotation<Icrf, Fixed>,
+    eye: &Eye,
+    lens: &Camera,
+) -> TileSet {
+    let fixed_from_icrf = icrf_from_fixed.inverse();
+    let tan_y = libm::tan(0.5 * f64::from(lens.fov_y_rad));
+    let view = View {
+        camera_m: fixed_from_icrf.raw(camera),
+        forward: fixed_from_icrf.raw(eye.view_from_icrf.inverse().raw(DVec3::NEG_Z)),
+        cone_rad: libm::atan(tan_y * libm::hypot(1.0, f64::from(lens.aspect()))),
+        pixel_rad: f64::from(lens.pixel_rad()),
+        max_error_px: TILE_ERROR_PX,
+        relief_max: body.relief_max,
+    };
+    select(relief, &view)
 }
 
 fn ship(world: &World, rig: &Rig, stage: &Stage<'_>, rigid: &Rigid, bodies: &[Body]) -> Ship {

@@ -13,6 +13,8 @@ pub mod sky_probe;
 pub mod smooth_body;
 pub mod stars;
 pub mod sun_disc;
+pub mod terrain;
+pub mod tile_heights;
 pub mod tonemap;
 
 use super::RenderError;
@@ -31,6 +33,8 @@ pub struct Passes {
     pub smooth_body: smooth_body::SmoothBody,
     /// The ship's shadow.
     pub shadow: shadow::ShipShadow,
+    /// Ground with relief.
+    pub terrain: terrain::Terrain,
     /// Hulls and flames.
     pub ships: ships::Ships,
     /// Where this frame's ships are.
@@ -57,6 +61,7 @@ impl Passes {
             no_shadow: ShadowMap::none(gpu),
             smooth_body: smooth_body::SmoothBody::new(gpu, shaders, shared, maps)?,
             shadow: shadow::ShipShadow::new(gpu, shaders, shared)?,
+            terrain: terrain::Terrain::new(gpu, shaders, shared, maps)?,
             ships: ships::Ships::new(gpu, shaders, shared)?,
             ship_geometry: ships::ShipGeometry::new(gpu),
             stars: stars::Stars::new(gpu, shaders, shared)?,
