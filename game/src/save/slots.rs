@@ -73,7 +73,9 @@ pub struct Slots {
 impl Slots {
     /// The folder; made on the first write.
     pub fn new(dir: impl Into<PathBuf>) -> Self {
-        Self { dir: dir.into() }
+        let dir: PathBuf = dir.into();
+        // The parent of a bare file name is empty; what is meant is here.
+        Self { dir: if dir.as_os_str().is_empty() { PathBuf::from(".") } else { dir } }
     }
 
     /// Where it is.
