@@ -38,6 +38,12 @@ fn count_pixels(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_inv
     }
 }
 
+// Stops by which a scene of this luminance is left darker than middle grey. Twin of engine::light::exposure::dimness_ev.
+fn dimness_ev(luminance_cd_m2: f32) -> f32 {
+    let key = 1.03 - 2.0 / (2.0 + log2(luminance_cd_m2 + 1.0) / log2(10.0));
+    return max(log2(0.6769 / key), 0.0);
+}
+
 // One step of adaptation. Twin of engine::light::exposure::{ev100_of_histogram, adapt, exposure_of_ev100}.
 @compute @workgroup_size(1)
 fn settle() {
@@ -59,7 +65,7 @@ fn settle() {
     // EV100 = log2(L · 100 / 12.5); a picture with nothing in it is exposed for the darkest.
     var ev = meter.limit.x;
     if weight > 0.0 {
-        ev = clamp(sum / weight + 3.0, meter.limit.x, meter.limit.y);
+        ev = clamp(sum / weight + 3.0 + dimness_ev(exp2(sum / weight)), meter.limit.x, meter.limit.y);
     }
     ev = max(ev, meter.limit.z);
     if exposure.settled > 0.5 && frame.forward.w >= 0.0 {

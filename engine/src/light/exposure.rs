@@ -27,6 +27,14 @@ pub fn exposure_of_ev100(ev100: f32) -> f32 {
     1.0 / (1.2 * ev100.exp2())
 }
 
+/// Stops by which a scene of this luminance is left darker than middle grey, so that dusk looks like dusk and totality like
+/// night: the key of a scene, `1.03 − 2/(2 + log₁₀(L + 1))` [Krawczyk, Myszkowski & Seidel 2005, eq. 11], against a sunlit one's.
+pub fn dimness_ev(luminance_cd_m2: f32) -> f32 {
+    const SUNLIT_KEY: f32 = 0.6769;
+    let key = 1.03 - 2.0 / (2.0 + (luminance_cd_m2 + 1.0).log10());
+    (SUNLIT_KEY / key).log2().max(0.0)
+}
+
 /// Bin of a luminance in cd/m²; 0 for what is too dark, negative or NaN.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
 pub fn bin_of_luminance(luminance_cd_m2: f32) -> usize {
@@ -48,7 +56,8 @@ pub fn ev100_of_histogram(bins: &[u32]) -> f32 {
         weight += inside;
         before = after;
     }
-    if weight > 0.0 { ev100_of_luminance((sum / weight).exp2()) } else { EV100_DARK }
+    let luminance = (sum / weight).exp2();
+    if weight > 0.0 { ev100_of_luminance(luminance) + dimness_ev(luminance) } else { EV100_DARK }
 }
 
 /// EV100 after `dt_s` seconds of adaptation from `now` towards `goal`: exponential, quicker to bright light than to dark.
@@ -74,11 +83,19 @@ mod tests {
             let mut bins = vec![0; BINS];
             bins[bin_of_luminance(luminance)] = 1000;
             bins[0] = 1_000_000; // black sky does not vote
-            assert!((ev100_of_histogram(&bins) - ev100_of_luminance(luminance)).abs() < 0.11, "{luminance}");
+            let wanted = ev100_of_luminance(luminance) + dimness_ev(luminance);
+            assert!((ev100_of_histogram(&bins) - wanted).abs() < 0.11, "{luminance}");
         }
         assert_eq!(ev100_of_histogram(&[0; BINS]), EV100_DARK);
         assert_eq!([f32::NAN, -1.0, 0.0, 1e-9].map(bin_of_luminance), [0; 4]);
         assert_eq!(bin_of_luminance(f32::INFINITY), BINS - 1);
+    }
+
+    #[test]
+    fn dim_scenes_stay_dim() {
+        assert!(dimness_ev(4096.0) < 0.01 && dimness_ev(1e5) == 0.0);
+        assert!((dimness_ev(100.0) - 0.36).abs() < 0.1 && dimness_ev(1.0) > 1.5);
+        assert!(dimness_ev(0.0).is_finite() && dimness_ev(0.0) > 4.0);
     }
 
     #[test]
