@@ -123,9 +123,9 @@ struct MapShape {
 }
 const BORDER: i32 = 2;
 
-// Value and its derivatives by cells at a sample of a grid with 2^bits samples along a face; `v` counts them from the face's corner.
+// Value and its steepness per cell (on an edge of the cube the one along it stands for both) at a sample of a grid with 2^bits samples along a face; `v` counts them from the face's corner.
 // Cell and fraction come from whole numbers: exact at every level.
-fn cube_sample(map: texture_2d_array<i32>, shape: MapShape, face: u32, bits: u32, v: vec2<i32>) -> vec3<f32> {
+fn cube_sample(map: texture_2d_array<i32>, shape: MapShape, face: u32, bits: u32, v: vec2<i32>) -> vec2<f32> {
     let level_bits = min(bits, shape.bits);
     let shift = bits - level_bits;
     let node = v >> vec2<u32>(shift);
@@ -154,5 +154,9 @@ fn cube_sample(map: texture_2d_array<i32>, shape: MapShape, face: u32, bits: u32
         value += wy[j] * along;
         slope += vec2<f32>(wy[j] * dot(dx, s), dy[j] * along);
     }
-    return vec3<f32>(shape.offset + shape.scale * value, shape.scale * slope);
+    let x = vec2<f32>(node) + t;
+    let n = f32(1u << level_bits);
+    let e = vec2<f32>(smooth_between(1.0, 3.0, min(x.x, n - x.x)), smooth_between(1.0, 3.0, min(x.y, n - x.y)));
+    let steep = e.x * (2.0 - e.y) * slope.x * slope.x + e.y * (2.0 - e.x) * slope.y * slope.y;
+    return vec2<f32>(shape.offset + shape.scale * value, abs(shape.scale) * sqrt(steep));
 }

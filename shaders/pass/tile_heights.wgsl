@@ -41,7 +41,7 @@ struct Lattice {
 fn mapped(face: u32, bits: u32, v: vec2<i32>) -> vec3<f32> {
     let value = cube_sample(height_map, relief.height_map, face, bits, v);
     let cell = relief.noise.w / f32(1u << min(bits, relief.height_map.bits));
-    let rough = smooth_between(0.0, 1.0, length(value.yz) / cell / ROUGH_SLOPE + max(value.x, 0.0) / ROUGH_HEIGHT_M);
+    let rough = smooth_between(0.0, 1.0, value.y / cell / ROUGH_SLOPE + max(value.x, 0.0) / ROUGH_HEIGHT_M);
     var coast = 0.0;
     if relief.counts.w > 0u {
         coast = cube_sample(coast_map, relief.coast_map, face, bits, v).x;

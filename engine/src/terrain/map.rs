@@ -77,6 +77,12 @@ fn weights(t: f64) -> ([f64; 4], [f64; 4]) {
     )
 }
 
+/// 0 within one cell of an edge, 1 from three cells on.
+fn inside(cells: f64) -> f64 {
+    let t = (0.5 * (cells - 1.0)).clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}
+
 #[allow(clippy::cast_possible_truncation)]
 fn rounded(x: f64) -> i16 {
     libm::round(x).clamp(-32_768.0, 32_767.0) as i16
@@ -175,9 +181,10 @@ impl CubeMap {
         (finest.saturating_sub(bits) as usize).min(self.mips.len().saturating_sub(1))
     }
 
-    /// Value and its derivatives by the face coordinates in cells, at face coordinates `u`, `v` ∈ [−1, 1] (or one cell beyond).
-    pub fn sample(&self, mip: usize, face: Face, u: f64, v: f64) -> (f64, [f64; 2]) {
-        let Some(m) = self.mips.get(mip) else { return (self.offset, [0.0; 2]) };
+    /// Value, and its steepness per cell, at face coordinates `u`, `v` ∈ [−1, 1] (or one cell beyond). On an edge of the cube the
+    /// derivative across it is not the same seen from both faces: there the one along it stands for both, so that faces meet.
+    pub fn sample(&self, mip: usize, face: Face, u: f64, v: f64) -> (f64, f64) {
+        let Some(m) = self.mips.get(mip) else { return (self.offset, 0.0) };
         let n = m.cells as f64;
         let (x, y) = ((u + 1.0) * 0.5 * n, (v + 1.0) * 0.5 * n);
         let limit = m.cells.cast_signed();
@@ -194,7 +201,9 @@ impl CubeMap {
             dv += dy * along;
             du += wy * (s[0] * dx[0] + s[1] * dx[1] + s[2] * dx[2] + s[3] * dx[3]);
         }
-        (self.offset + self.scale * value, [self.scale * du, self.scale * dv])
+        let (eu, ev) = (inside(x.min(n - x)), inside(y.min(n - y)));
+        let steep = eu * (2.0 - ev) * du * du + ev * (2.0 - eu) * dv * dv;
+        (self.offset + self.scale * value, self.scale.abs() * steep.sqrt())
     }
 }
 
@@ -244,6 +253,24 @@ fn fill_border(m: &mut Mip) {
     }
     for (at, value) in filled {
         m.nodes[at] = value;
+    }
+    // An edge goes on beyond its corners by its own nodes alone: both faces then interpolate the same along it.
+    for face in 0..6 {
+        for side in [0, n] {
+            for k in 1..=b {
+                let beyond = |end: isize, next: isize| rounded((1 + k) as f64 * end as f64 - k as f64 * next as f64);
+                let value = |x: isize, y: isize| isize::from(m.nodes[m.at(face, x, y)]);
+                let line = [
+                    (m.at(face, side, -k), beyond(value(side, 0), value(side, 1))),
+                    (m.at(face, side, n + k), beyond(value(side, n), value(side, n - 1))),
+                    (m.at(face, -k, side), beyond(value(0, side), value(1, side))),
+                    (m.at(face, n + k, side), beyond(value(n, side), value(n - 1, side))),
+                ];
+                for (at, value) in line {
+                    m.nodes[at] = value;
+                }
+            }
+        }
     }
 }
 
@@ -301,7 +328,8 @@ mod tests {
         for k in 0..=100 {
             let v = f64::from(k) / 50.0 - 1.0;
             for mip in 0..map.mips.len() {
-                assert!((map.sample(mip, 0, 1.0, v).0 - map.sample(mip, 2, -1.0, v).0).abs() < 1e-9, "a step between faces");
+                let ((a, slope_a), (b, slope_b)) = (map.sample(mip, 0, 1.0, v), map.sample(mip, 2, -1.0, v));
+                assert!((a - b).abs() < 1e-9 && (slope_a - slope_b).abs() < 1e-9, "a step between faces: {a} {b}, {slope_a} {slope_b}");
             }
         }
     }

@@ -306,9 +306,9 @@ impl Relief {
             let (face, u, v) = face_of(direction);
             let bits = u32::from(level) + SAMPLE_BITS;
             let mip = map.mip_for(bits);
-            let (value, [du, dv]) = map.sample(mip, face, u, v);
+            let (value, steep) = map.sample(mip, face, u, v);
             let cell = edge_m(self.radius_m) / (map.cells() >> mip) as f64;
-            let slope = (du * du + dv * dv).sqrt() / cell;
+            let slope = steep / cell;
             base += value;
             rough = smooth(0.0, 1.0, slope / ROUGH_SLOPE + value.max(0.0) / ROUGH_HEIGHT_M);
             coast = self.maps.coast.as_ref().map(|c| c.sample(c.mip_for(bits), face, u, v).0);
