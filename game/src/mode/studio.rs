@@ -5,7 +5,7 @@ use crate::picture::{self, Kind, PictureError};
 use crate::view::{Picture, Rig, snapshot};
 use crate::world::World;
 use engine::gpu::{BackendChoice, Gpu, GpuError};
-use engine::render::{FrameReport, OffscreenImage, RenderError, Renderer, RendererOptions, StarCatalogue, Target};
+use engine::render::{FrameReport, HdrImage, OffscreenImage, RenderError, Renderer, RendererOptions, StarCatalogue, Target};
 use engine::scene::Force;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
@@ -64,6 +64,24 @@ impl Studio {
         Ok(self.renderer.render(&self.gpu, &scene, Target::Image(&self.image), None)?)
     }
 
+    /// Another size for the pictures to come, pixels.
+    pub fn resize(&mut self, (width, height): (u32, u32)) {
+        if self.size_px != [width, height] {
+            self.size_px = [width, height];
+            self.image = OffscreenImage::new(&self.gpu, self.size_px);
+        }
+    }
+
+    /// Passes to force in the pictures to come.
+    pub fn force(&mut self, force: Force) {
+        self.force = force;
+    }
+
+    /// The last picture, scene-linear, cd/m² per channel, before exposure.
+    pub fn hdr(&self) -> Result<HdrImage, StudioError> {
+        Ok(self.renderer.read_hdr(&self.gpu)?)
+    }
+
     /// The last picture, 8-bit sRGB RGBA.
     pub fn pixels(&self) -> Result<Vec<u8>, StudioError> {
         Ok(self.image.read_rgba8(&self.gpu)?)
@@ -74,7 +92,7 @@ impl Studio {
         let [width, height] = self.size_px;
         match Kind::of(path)? {
             Kind::Png => picture::write_png(path, width, height, &self.pixels()?)?,
-            Kind::Exr => picture::write_exr(path, width, height, &self.renderer.read_hdr(&self.gpu)?.rgba)?,
+            Kind::Exr => picture::write_exr(path, width, height, &self.hdr()?.rgba)?,
         }
         Ok(())
     }
