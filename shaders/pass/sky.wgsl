@@ -53,7 +53,9 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
         // From afar the air at the limb is thinner than a pixel: there, several rays across it stand for one.
         let pixel = frame.up.w * (path.start + path.exit);
         let low = air_altitude(air, path, clamp(-path.slope, 0.0, path.exit));
-        let thin = pixel > 0.05 * air.shape.y && low < air.shape.y + pixel && low > -pixel;
+        // From within the air, ground that was drawn ends the ray where it stands.
+        let afar = path.start > 0.0 || stored <= 0.0;
+        let thin = afar && pixel > 0.05 * air.shape.y && low < air.shape.y + pixel && low > -pixel;
         let rays = select(1u, 5u, thin);
         var radiance = vec3<f32>(0.0);
         var kept = vec3<f32>(0.0);
