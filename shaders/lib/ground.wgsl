@@ -47,8 +47,9 @@ fn paint_province(paint: Paint, direction: vec3<f32>) -> f32 {
 // Grass, rock, sand and snow. `tint`: colour from the map; `coarse`, `fine`: noise of about −1 … 1; `near`: 1 on the ground, 0 from afar.
 fn living_ground(tint: vec3<f32>, height: f32, slope: f32, latitude: f32, coarse: f32, fine: f32, near: f32) -> Material {
     let light = max(dot(tint, vec3<f32>(0.2126, 0.7152, 0.0722)), 1e-3);
-    // The map's own shade is kept; its darkest greens are lifted, being seen through haze there.
-    let lifted = pow(max(tint, vec3<f32>(0.0)), vec3<f32>(0.88));
+    // The map's own shade is kept, but dark texels are blue from haze and from the sea beside them: they become the green that lies there.
+    let blue = (1.0 - smoothstep(0.08, 0.25, light)) * clamp((tint.b - 0.45 * tint.g) / (0.4 * light), 0.0, 1.0);
+    let lifted = mix(pow(max(tint, vec3<f32>(0.0)), vec3<f32>(0.88)), vec3<f32>(0.92, 1.0, 0.58) * max(1.1 * light, 0.045), blue);
     var soil = lifted * (1.0 + 0.30 * coarse) * mix(1.0, clamp(0.10 / light, 1.0, 1.8), 0.6 * near);
     soil = mix(soil, soil * vec3<f32>(1.25, 1.05, 0.75), near * clamp(0.5 * fine + 0.3 * coarse, 0.0, 0.6));
     soil *= 1.0 + 0.35 * fine * near;
