@@ -212,10 +212,9 @@ impl CubeMap {
 fn share_edges(m: &mut Mip) {
     let n = m.cells.cast_signed();
     let full = m.cells as f64;
-    for face in 1..6 {
+    for (face, [right, up, out]) in FACE_AXES.into_iter().enumerate() {
         for k in 0..=n {
             for (x, y) in [(0, k), (n, k), (k, 0), (k, n)] {
-                let [right, up, out] = FACE_AXES[face];
                 let p = right * (2 * x - n) as f64 + up * (2 * y - n) as f64 + out * full;
                 if let Some(owner) = (0..face).find(|g| p.dot(FACE_AXES[*g][2]) == full) {
                     let [r, u, _] = FACE_AXES[owner];
