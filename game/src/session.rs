@@ -40,6 +40,15 @@ impl Session {
         Self { world, ticks: 0, quick: VecDeque::new(), recorder: None }
     }
 
+    /// Goes on in a system whose files were changed ([`World::adopt`]); quick slots follow, so that none brings the old one back.
+    pub fn adopt(&mut self, system: &std::sync::Arc<crate::world::system::System>) -> bool {
+        let same = self.world.adopt(system);
+        if same {
+            self.quick.retain_mut(|kept| kept.adopt(system));
+        }
+        same
+    }
+
     /// Records the flight from now on.
     pub fn record(&mut self) {
         self.recorder = Some(Recorder::new(&self.world));

@@ -27,17 +27,23 @@ impl Reloader {
         let (tell, changes) = channel();
         let mut watcher = new_debouncer(QUIET, None, tell).map_err(|e| e.to_string())?;
         for root in assets.overlay.roots() {
-            for folder in [root.join("systems").join(key), root.join("maps")] {
-                if folder.is_dir() {
-                    watcher.watch(&folder, RecursiveMode::Recursive).map_err(|e| format!("{}: {e}", folder.display()))?;
-                }
+            let system = root.join("systems").join(key);
+            // A mod that does not have the folder yet may get it: then all of the mod is watched.
+            let folders = if system.is_dir() { vec![system, root.join("maps")] } else { vec![root.clone()] };
+            for folder in folders.iter().filter(|f| f.is_dir()) {
+                watcher.watch(folder, RecursiveMode::Recursive).map_err(|e| format!("{}: {e}", folder.display()))?;
             }
         }
         Ok(Self { assets: assets.clone(), key: key.to_owned(), changes, _watcher: watcher })
     }
 
-    /// `None` while nothing changed; else the system as it is now, or everything that is wrong with it.
-    pub fn poll(&self) -> Option<Result<Arc<System>, AssetErrors>> {
+    /// The system that is watched.
+    pub fn key(&self) -> &str {
+        &self.key
+    }
+
+    /// True once after files changed, for those who read on a thread of their own.
+    pub fn changed(&self) -> bool {
         let mut changed = false;
         while let Ok(batch) = self.changes.try_recv() {
             changed |= match batch {
@@ -46,6 +52,11 @@ impl Reloader {
                 Err(_) => true,
             };
         }
-        changed.then(|| self.assets.system(&self.key, &|_, _| ()))
+        changed
+    }
+
+    /// `None` while nothing changed; else the system as it is now, or everything that is wrong with it.
+    pub fn poll(&self) -> Option<Result<Arc<System>, AssetErrors>> {
+        self.changed().then(|| self.assets.system(&self.key, &|_, _| ()))
     }
 }

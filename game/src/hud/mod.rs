@@ -184,6 +184,8 @@ pub struct Hud {
     pub menu: menu::State,
     /// Small notices, each with the seconds that it still stays.
     pub notices: Vec<(String, f32)>,
+    /// What is wrong with changed files, shown until they are mended.
+    pub fault: Option<String>,
     /// A message that waits for a click.
     pub message: Option<String>,
 }
@@ -254,6 +256,15 @@ impl Hud {
                 }
             });
         }
+        if let Some(text) = &self.fault {
+            panels::area(ctx, "fault", egui::Align2::CENTER_TOP, [0.0, 64.0], |ui| {
+                style::panel(0.92).show(ui, |ui| {
+                    ui.set_max_width(760.0);
+                    ui.label(egui::RichText::new("A changed file is broken; the last good one stays in force").color(style::DANGER));
+                    ui.label(egui::RichText::new(text).font(style::mono(12.0)));
+                });
+            });
+        }
         let Some(text) = self.message.clone() else { return };
         let modal = egui::Modal::new(egui::Id::unique("message")).frame(style::panel(0.97)).show(ctx, |ui| {
             ui.set_max_width(620.0);
@@ -302,6 +313,7 @@ mod tests {
             for screen in screens {
                 let mut hud = Hud { screen, help: screen == Screen::Flight, ..Hud::default() };
                 hud.notice("a notice");
+                hud.fault = Some("body.toml:3: not TOML".to_owned());
                 let texts = run(|ctx| {
                     let scene = Scene { readout: &shown, world: &world, snapshot: None };
                     hud.show(ctx, Some(&scene), &lists, &mut settings, &mut input);

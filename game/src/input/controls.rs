@@ -115,6 +115,8 @@ controls! {
     Photo, View, "Photo mode", ["key:V"];
     HideHud, View, "Hide or show the HUD", ["key:F2"];
     SavePicture, View, "Save a picture", ["key:F12"];
+    CameraUp, View, "Free camera up", ["key:R"];
+    CameraDown, View, "Free camera down", ["key:F"];
     ZoomIn, View, "Nearer", ["key:=", "pad:DPadRight"];
     ZoomOut, View, "Farther", ["key:-", "pad:DPadLeft"];
     Help, Game, "Help", ["key:F1"];

@@ -28,6 +28,8 @@ pub enum Focus {
     /// The ship.
     #[default]
     Flight,
+    /// The free camera: the ship hears nothing but the clock's controls.
+    Camera,
     /// A menu: only Pause, Help and what photo mode needs get through.
     Menu,
     /// A text field, or the binding screen: nothing gets through.
@@ -79,7 +81,7 @@ impl Input {
 
     /// Who has the keyboard from now on. What is held is let go when the ship loses it.
     pub fn set_focus(&mut self, focus: Focus) {
-        if focus != self.focus && focus != Focus::Flight {
+        if focus != self.focus && !matches!(focus, Focus::Flight | Focus::Camera) {
             self.release_all();
         }
         self.focus = focus;
@@ -165,9 +167,9 @@ impl Input {
         sum.clamp(-1.0, 1.0)
     }
 
-    /// True while a control is held and the ship has the keyboard.
+    /// True while a control is held and the ship or the camera has the keyboard.
     pub fn held(&self, control: Control) -> bool {
-        self.focus == Focus::Flight
+        matches!(self.focus, Focus::Flight | Focus::Camera)
             && self.bindings.sources(control).iter().any(|s| match s {
                 Source::Key(code) => self.keys.contains(code),
                 Source::Mouse(button) => self.mouse.contains(button),
@@ -178,12 +180,17 @@ impl Input {
     /// The commands of the next tick. `dt_s` is the length of a tick; `ship` is what the World last told.
     pub fn sample(&mut self, dt_s: f64, ship: &Readout) -> Commands {
         let mut commands = Commands::default();
-        if self.focus == Focus::Flight {
-            commands.axes = self.axes(dt_s);
-            self.move_lever(dt_s, ship, &mut commands.actions);
+        if matches!(self.focus, Focus::Flight | Focus::Camera) {
+            let flies = self.focus == Focus::Flight;
+            if flies {
+                commands.axes = self.axes(dt_s);
+                self.move_lever(dt_s, ship, &mut commands.actions);
+            } else {
+                self.eased = [0.0; 6];
+            }
             let pressed: Vec<Control> = self.queued.iter().copied().filter(|c| !matches!(c.group(), Group::View | Group::Game)).collect();
             self.queued.retain(|c| matches!(c.group(), Group::View | Group::Game));
-            for control in pressed {
+            for control in pressed.into_iter().filter(|c| flies || c.group() == Group::Time) {
                 self.act(control, ship, &mut commands.actions);
             }
         } else {
@@ -193,13 +200,26 @@ impl Input {
         commands
     }
 
+    /// Where the free camera is pushed: right, up, back, each −1 … 1, by what turns and shifts the ship otherwise.
+    pub fn camera_push(&self) -> [f64; 3] {
+        use Control as C;
+        let keys = |plus: [Control; 2], minus: [Control; 2]| {
+            f64::from(i8::from(plus.iter().any(|c| self.held(*c))) - i8::from(minus.iter().any(|c| self.held(*c))))
+        };
+        let right = keys([C::YawRight, C::TranslateRight], [C::YawLeft, C::TranslateLeft]) + self.deflection(Analogue::Roll);
+        let up = keys([C::CameraUp, C::TranslateUp], [C::CameraDown, C::TranslateDown]) + self.deflection(Analogue::Throttle);
+        let back = keys([C::PitchUp, C::TranslateBack], [C::PitchDown, C::TranslateForward]) + self.deflection(Analogue::Pitch);
+        let fine = if self.held(C::Fine) { FINE } else { 1.0 };
+        [right, up, back].map(|v| v.clamp(-1.0, 1.0) * fine)
+    }
+
     fn press(&mut self, source: Source) {
         if self.focus == Focus::Text {
             self.caught = Some(source);
             return;
         }
         for control in Control::ALL {
-            let heard = self.focus == Focus::Flight
+            let heard = matches!(self.focus, Focus::Flight | Focus::Camera)
                 || matches!(control, Control::Pause | Control::Help | Control::Photo | Control::HideHud | Control::SavePicture);
             if heard && self.bindings.sources(*control).contains(&source) {
                 self.queued.push(*control);
@@ -378,6 +398,23 @@ mod tests {
         input.set_focus(Focus::Menu);
         input.key(KeyCode::Escape, true);
         assert_eq!(input.take_view_controls(), [Control::Pause]);
+    }
+
+    #[test]
+    fn the_free_camera_moves_and_the_ship_stays_inert_but_for_the_clock() {
+        let (mut input, ship) = (input(), readout());
+        input.set_focus(Focus::Camera);
+        for key in [KeyCode::KeyW, KeyCode::KeyA, KeyCode::KeyF, KeyCode::KeyZ, KeyCode::KeyT, KeyCode::ShiftLeft] {
+            input.key(key, true);
+        }
+        for _ in 0..30 {
+            assert_eq!(input.sample(TICK_S, &ship), Commands::default());
+        }
+        assert_eq!(input.camera_push(), [-1.0, -1.0, -1.0], "left, down, ahead");
+        input.key(KeyCode::Period, true);
+        assert!(matches!(input.sample(TICK_S, &ship).actions[..], [Action::Warp(_)]));
+        input.set_focus(Focus::Menu);
+        assert_eq!(input.camera_push(), [0.0; 3]);
     }
 
     #[test]

@@ -23,6 +23,9 @@ const NEAR_M: f32 = 0.1;
 /// Bodies whose disc has a radius of fewer pixels than this are drawn smooth, without tiles.
 const TILES_FROM_PX: f64 = 6.0;
 
+/// The air of a disc with a smaller radius than this is left out: its tables would be baked for nothing that can be seen.
+const AIR_FROM_PX: f64 = 0.5;
+
 /// How far the drawn ground may depart from the true one, pixels.
 const TILE_ERROR_PX: f64 = 1.0;
 
@@ -145,7 +148,7 @@ impl Stage<'_> {
                 .collect(),
             albedo: body.albedo,
             surface,
-            air: body.air.as_ref().map(|a| a.medium.clone()),
+            air: body.air.as_ref().filter(|_| radius_px >= AIR_FROM_PX).map(|a| a.medium.clone()),
         }
     }
 }

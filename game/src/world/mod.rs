@@ -65,6 +65,26 @@ impl World {
         self.advance(i64::from(quarters / 4), commands.axes);
     }
 
+    /// Goes on in a system whose files were changed, if it has the same bodies; false, and nothing is changed, if not. The ship
+    /// keeps its place beside its body; one that stands is lifted or lowered with the ground below it.
+    pub fn adopt(&mut self, system: &Arc<System>) -> bool {
+        let same = |(a, b): (&system::Body, &system::Body)| a.key == b.key && a.parent == b.parent;
+        if self.system.bodies.len() != system.bodies.len() || !self.system.bodies.iter().zip(&system.bodies).all(same) {
+            return false;
+        }
+        self.leave_arc();
+        if let Motion::Landed(rest) | Motion::Crashed(rest) = &mut self.ship.motion {
+            let up = rest.position.0.normalize_or(DVec3::Z);
+            let ground = |s: &System| {
+                let body = s.body(rest.body);
+                body.radius_m + body.relief.as_ref().map_or(0.0, |r| r.surface_m(up))
+            };
+            rest.position += Vector::new(up * (ground(system) - ground(&self.system)));
+        }
+        self.system = system.clone();
+        true
+    }
+
     /// The rigid body now, however it moves.
     pub fn rigid(&self) -> Rigid {
         match &self.ship.motion {

@@ -1,7 +1,9 @@
-//! The loop of the window: events in, ticks, one frame out. [`asked`] is what menus and view controls ask for, [`drawing`] the frame.
+//! The loop of the window: events in, ticks, one frame out. [`asked`] is what menus and view controls ask for,
+//! [`drawing`] the frame, [`watch`] the hot reload.
 
 mod asked;
 mod drawing;
+mod watch;
 
 use super::canvas::Canvas;
 use super::clock::Clock;
@@ -17,6 +19,7 @@ use crate::mode::open::{self, Start};
 use crate::save::Slots;
 use crate::settings::Settings;
 use crate::sound::{Sound, Volumes};
+use crate::view::CameraMode;
 use crate::world::World;
 use crate::world::readout::Situation;
 use engine::gpu::BackendChoice;
@@ -36,6 +39,8 @@ use winit::window::{Window, WindowId};
 const LOOK_RAD_PER_PX: f64 = 0.004;
 /// Radians a second that a stick turns the view at full deflection.
 const LOOK_RAD_PER_S: f64 = 1.6;
+/// Steps of the sky's march where a processor draws: half of what a graphics card does.
+const SKY_STEPS_CPU: u32 = 12;
 /// Seconds between a crash and its screen.
 const CRASH_PAUSE_S: f64 = 1.8;
 
@@ -57,6 +62,7 @@ pub struct App {
     pipelines: Option<Job<Result<Renderer, RenderError>>>,
     world: Option<Job<Begun>>,
     flight: Option<Flight>,
+    watch: watch::Watch,
     clicked: Vec<Action>,
     clock: Clock,
     last: Instant,
@@ -64,6 +70,9 @@ pub struct App {
     crashed_s: f64,
     straight_in: bool,
     quitting: bool,
+    began: Instant,
+    /// Frames of the 3-D picture so far.
+    drawn: u64,
     /// A device was lost and made again; a second time in a row is an end.
     revived: bool,
 }
@@ -98,12 +107,15 @@ impl App {
             pipelines: None,
             world: None,
             flight: None,
+            watch: watch::Watch::default(),
             clicked: Vec::new(),
             clock: Clock::default(),
             last: Instant::now(),
             drag: None,
             crashed_s: 0.0,
             quitting: false,
+            began: Instant::now(),
+            drawn: 0,
             revived: false,
         }
     }
@@ -120,6 +132,9 @@ impl App {
         self.pipelines = Some(Job::spawn(move |progress| {
             progress(0.1, "Building pipelines");
             let mut renderer = Renderer::new(&gpu, RendererOptions::default())?;
+            if gpu.info.device_type == wgpu::DeviceType::Cpu {
+                renderer.set_sky_steps(SKY_STEPS_CPU);
+            }
             progress(0.8, "Stars");
             let catalogue = stars.and_then(|path| std::fs::read(path).ok());
             match catalogue.map(|bytes| engine::render::StarCatalogue::parse(&bytes)) {
@@ -134,7 +149,7 @@ impl App {
     /// Starts a flight on a thread: from a start, or from a save.
     fn begin(&mut self, what: Start) {
         let assets = self.opening.assets.clone();
-        let at_hand = self.flight.as_ref().map(|f| f.session.world.clone());
+        let at_hand = self.flight.as_ref().filter(|_| !self.watch.stale).map(|f| f.session.world.clone());
         self.world = Some(Job::spawn(move |progress| match what {
             Start::Named(key) => flight::begin(&assets, &key, at_hand.as_ref(), progress).map(|w| (w, Vec::new())),
             Start::Save(loaded) => flight::restore(&assets, &loaded, at_hand.as_ref(), progress),
@@ -156,6 +171,7 @@ impl App {
             std::thread::sleep(std::time::Duration::from_millis(40));
             return;
         }
+        self.hear_watch();
         self.set_focus();
         for control in self.input.take_view_controls() {
             self.control(control);
@@ -189,6 +205,7 @@ impl App {
                 let flight = Flight::new(world);
                 self.input.adopt(&flight.readout);
                 self.flight = Some(flight);
+                self.watch_system();
                 self.clock.rest();
                 self.crashed_s = 0.0;
                 self.hud.screen = if std::mem::take(&mut self.straight_in) { Screen::Flight } else { Screen::Main };
@@ -209,7 +226,8 @@ impl App {
         let focus = if self.hud.options.waiting.is_some() || typing {
             Focus::Text
         } else if self.hud.screen.runs() && !self.hud.help && self.hud.message.is_none() {
-            Focus::Flight
+            let free = self.hud.screen == Screen::Flight && self.flight.as_ref().is_some_and(|f| f.rig.mode == CameraMode::Free);
+            if free { Focus::Camera } else { Focus::Flight }
         } else {
             Focus::Menu
         };
@@ -250,7 +268,10 @@ impl App {
         }
         let zoom = f64::from(i8::from(self.input.held(Control::ZoomOut)) - i8::from(self.input.held(Control::ZoomIn)));
         if zoom != 0.0 {
-            flight.rig.zoom(libm::exp(zoom * 1.5 * dt_s.min(0.1)));
+            zoomed(flight, zoom * 1.5 * dt_s.min(0.1));
+        }
+        if self.hud.screen == Screen::Flight {
+            flight.fly(self.input.camera_push().into(), dt_s.min(0.25));
         }
     }
 
@@ -311,11 +332,20 @@ impl App {
                     MouseScrollDelta::PixelDelta(p) => p.y / 50.0,
                 };
                 if let Some(flight) = &mut self.flight {
-                    flight.rig.zoom(libm::exp(-0.12 * steps.clamp(-20.0, 20.0)));
+                    zoomed(flight, -0.12 * steps.clamp(-20.0, 20.0));
                 }
             }
             _ => {}
         }
+    }
+}
+
+/// Farther by a factor of e to the `by`; the free camera, which hangs at nothing, becomes slower.
+fn zoomed(flight: &mut Flight, by: f64) {
+    if flight.rig.mode == CameraMode::Free {
+        flight.change_pace(libm::exp(-2.0 * by));
+    } else {
+        flight.rig.zoom(libm::exp(by));
     }
 }
 

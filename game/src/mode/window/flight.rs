@@ -7,14 +7,20 @@ use crate::input::Input;
 use crate::save::slots::{Kind, Loaded};
 use crate::save::{self, SaveV1, Slots};
 use crate::session::{Event, Session};
+use crate::view::rig::Mount;
 use crate::view::{CameraMode, Rig};
 use crate::world::World;
+use crate::world::eclipse::Sky;
 use crate::world::readout::Readout;
+use engine::space::{Vector, sphere};
 use engine::time::TICK_S;
+use glam::DVec3;
 use std::path::Path;
 
 /// Seconds of flight between two automatic saves.
 const AUTO_SAVE_S: f64 = 300.0;
+/// The free camera is never slower than at this height, m.
+const LOWEST_M: f64 = 4.0;
 
 /// A flight.
 pub struct Flight {
@@ -24,6 +30,8 @@ pub struct Flight {
     pub readout: Readout,
     /// The camera.
     pub rig: Rig,
+    /// Speed of the free camera, heights above the ground a second.
+    pace: f64,
     unsaved_s: f64,
 }
 
@@ -40,7 +48,7 @@ impl Flight {
     /// A flight that begins with this World.
     pub fn new(world: World) -> Self {
         let readout = world.readout();
-        Self { session: Session::new(world), readout, rig: Rig::default(), unsaved_s: 0.0 }
+        Self { session: Session::new(world), readout, rig: Rig::default(), pace: 1.0, unsaved_s: 0.0 }
     }
 
     /// Runs ticks. What was clicked goes into the first of them.
@@ -88,7 +96,10 @@ impl Flight {
     pub fn next_camera(&mut self) -> &'static str {
         let (mode, name) = match self.rig.mode {
             CameraMode::Chase => (CameraMode::Cockpit, "Cockpit"),
-            CameraMode::Cockpit => (CameraMode::Free, "Free camera"),
+            CameraMode::Cockpit => {
+                self.leave_ship();
+                return "Free camera: W S A D R F move it, the wheel sets its speed";
+            }
             CameraMode::Free => (CameraMode::Map, "Far camera"),
             _ => (CameraMode::Chase, "Chase camera"),
         };
@@ -99,6 +110,53 @@ impl Flight {
             _ => (0.0, -0.2),
         };
         name
+    }
+
+    /// What the rig is mounted on, now.
+    fn mounted<T>(&mut self, with: impl FnOnce(&mut Rig, &Mount<'_>) -> T) -> T {
+        let world = &self.session.world;
+        let (rigid, sky) = (world.rigid(), Sky::at(&world.system, world.time));
+        let mount =
+            Mount { system: &world.system, sky: &sky, host: rigid.body, ship: rigid.state.position, icrf_from_hull: rigid.icrf_from_hull };
+        with(&mut self.rig, &mount)
+    }
+
+    /// The free camera begins where the chase camera would hang, looking the same way.
+    fn leave_ship(&mut self) {
+        self.mounted(|rig, mount| {
+            (rig.mode, rig.yaw_rad, rig.pitch_rad) = (CameraMode::Chase, 0.0, -0.2);
+            let eye = rig.eye(mount);
+            rig.fly(mount, &eye, Vector::new(DVec3::ZERO));
+            let fixed = |v: DVec3| mount.axes(mount.host).inverse().raw(v);
+            let ahead = fixed(eye.view_from_icrf.inverse().raw(DVec3::NEG_Z));
+            let (east, up, north) = sphere::east_up_north(fixed(eye.position.0).normalize_or(DVec3::Z));
+            rig.mode = CameraMode::Free;
+            rig.yaw_rad = libm::atan2(-ahead.dot(east), ahead.dot(north));
+            rig.pitch_rad = libm::asin(ahead.dot(up).clamp(-1.0, 1.0));
+        });
+        self.pace = 1.0;
+    }
+
+    /// Moves the free camera for `dt_s` seconds along `push` (right, up, back): the height above the ground each second at a pace
+    /// of 1, so that one key is enough from the gear to the orbit.
+    pub fn fly(&mut self, push: DVec3, dt_s: f64) {
+        let pace = self.pace;
+        if self.rig.mode != CameraMode::Free || push == DVec3::ZERO {
+            return;
+        }
+        self.mounted(|rig, mount| {
+            let eye = rig.eye(mount);
+            let body = mount.system.body(eye.host);
+            let up = mount.axes(eye.host).inverse().raw(eye.position.0.normalize_or(DVec3::Z));
+            let ground = body.radius_m + body.relief.as_ref().map_or(0.0, |r| r.surface_m(up));
+            let speed = (eye.position.length() - ground).max(LOWEST_M) * pace;
+            rig.fly(mount, &eye, Vector::new(push * (speed * dt_s)));
+        });
+    }
+
+    /// Faster or slower by the wheel.
+    pub fn change_pace(&mut self, factor: f64) {
+        self.pace = (self.pace * factor).clamp(0.01, 20.0);
     }
 }
 
@@ -166,4 +224,27 @@ pub fn lists(assets: &Assets, slots: &Slots) -> Lists {
         }
     });
     Lists { starts: starts.collect(), saves: saves.collect() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_free_camera_starts_with_the_chase_view_and_moves_by_its_height() {
+        let mut flight = Flight::new(crate::hud::testing::world());
+        flight.rig.pitch_rad = -0.2;
+        let (chase, height) = flight.mounted(|rig, mount| {
+            let eye = rig.eye(mount);
+            (eye, eye.position.length() - mount.system.body(eye.host).radius_m)
+        });
+        flight.leave_ship();
+        let free = flight.mounted(|rig, mount| rig.eye(mount));
+        let turn = (free.view_from_icrf.raw(DVec3::X) - chase.view_from_icrf.raw(DVec3::X)).length();
+        assert!((free.position - chase.position).length() < 1e-3 && turn < 1e-6, "{turn}");
+        flight.fly(DVec3::NEG_Z, 0.01);
+        let moved = flight.mounted(|rig, mount| rig.eye(mount)).position - free.position;
+        let ahead = free.view_from_icrf.raw(moved.0);
+        assert!((ahead.z / (-0.01 * height) - 1.0).abs() < 0.02 && ahead.x.abs() < 1e-3 * height, "{ahead} of {height}");
+    }
 }

@@ -7,6 +7,7 @@ use crate::input::controls::Control;
 use crate::mode::open::Start;
 use crate::mode::window::flight;
 use crate::save::slots::Kind;
+use crate::world::readout::Situation;
 use std::path::PathBuf;
 
 impl App {
@@ -17,6 +18,7 @@ impl App {
         };
         match read {
             Ok(loaded) => {
+                self.auto_save();
                 self.straight_in = true;
                 self.begin(Start::Save(Box::new(loaded)));
             }
@@ -72,6 +74,7 @@ impl App {
     pub(super) fn request(&mut self, request: Request) {
         match request {
             Request::NewFlight(key) => {
+                self.auto_save();
                 self.straight_in = true;
                 self.begin(Start::Named(key));
             }
@@ -133,8 +136,13 @@ impl App {
     }
 
     pub(super) fn auto_save(&mut self) {
-        // The flight behind the main menu is a picture, not a flight.
-        if let Some(flight) = self.flight.as_ref().filter(|_| self.hud.screen != Screen::Main) {
+        // The flight behind the main menu and its pages is a picture, not a flight; and nobody wants to go on with a wreck.
+        let flying = match self.hud.screen {
+            Screen::Main => false,
+            Screen::Starts | Screen::Saves | Screen::Options => self.hud.menu.flying,
+            _ => true,
+        };
+        if let Some(flight) = self.flight.as_ref().filter(|f| flying && f.readout.situation != Situation::Crashed) {
             let text = flight.save(&self.slots, &Kind::Auto);
             if text.starts_with("Not") {
                 eprintln!("warning: {text}");

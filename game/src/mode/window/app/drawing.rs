@@ -81,6 +81,12 @@ impl App {
         canvas.window.pre_present_notify();
         canvas.gpu.queue.present(texture);
         self.revived = false;
+        if scene.is_some() {
+            if self.drawn == 0 && canvas.gpu.wait().is_ok() {
+                tracing::info!("first picture after {:.1} s", self.began.elapsed().as_secs_f64());
+            }
+            self.drawn += 1;
+        }
         self.clicked.extend(reply.actions);
         for request in reply.requests {
             self.request(request);

@@ -1,0 +1,66 @@
+//! Hot reload in the window: a system whose files change is read again on a thread and taken over by the flight; a broken file
+//! leaves the last good one in force and stands on the screen until it is mended. Not here: the watching ([`crate::assets::reload`]).
+
+use super::App;
+use crate::assets::{AssetErrors, Reloader};
+use crate::mode::window::job::{Job, Outcome};
+use crate::world::system::System;
+use std::sync::Arc;
+
+/// What is watched, and what came of it.
+#[derive(Default)]
+pub struct Watch {
+    reloader: Option<Reloader>,
+    reading: Option<Job<Result<Arc<System>, AssetErrors>>>,
+    /// The files tell of other bodies than the flight has: the next flight is to read them.
+    pub stale: bool,
+}
+
+impl App {
+    /// Watches the system of the flight.
+    pub(super) fn watch_system(&mut self) {
+        let Some(flight) = &self.flight else { return };
+        let key = flight.session.world.system.key.as_str();
+        if !self.watch.stale && self.watch.reloader.as_ref().is_some_and(|r| r.key() == key) {
+            return;
+        }
+        self.watch = Watch::default();
+        self.hud.fault = None;
+        match Reloader::watch(&self.opening.assets, key) {
+            Ok(reloader) => self.watch.reloader = Some(reloader),
+            Err(e) => tracing::warn!("changed files will not be noticed: {e}"),
+        }
+    }
+
+    /// Takes over what changed.
+    pub(super) fn hear_watch(&mut self) {
+        let Some(reloader) = &self.watch.reloader else { return };
+        let read = match self.watch.reading.as_mut().map(Job::poll) {
+            Some(Outcome::Running) => return,
+            Some(Outcome::Done(read)) => Some(read),
+            Some(Outcome::Died) | None => None,
+        };
+        self.watch.reading = None;
+        // A file that was saved again while it was read is read again, and only then believed.
+        if reloader.changed() {
+            let (assets, key) = (self.opening.assets.clone(), reloader.key().to_owned());
+            self.watch.reading = Some(Job::spawn(move |progress| assets.system(&key, progress)));
+            return;
+        }
+        let Some(flight) = &mut self.flight else { return };
+        match read {
+            Some(Ok(system)) => {
+                self.hud.fault = None;
+                self.watch.stale = !flight.session.adopt(&system);
+                flight.readout = flight.session.world.readout();
+                self.hud.notice(if self.watch.stale {
+                    format!("{}: other bodies than before; the next flight takes them over", system.name)
+                } else {
+                    format!("{}: changed files taken over", system.name)
+                });
+            }
+            Some(Err(errors)) => self.hud.fault = Some(errors.lines()),
+            None => {}
+        }
+    }
+}
