@@ -70,6 +70,7 @@ pub struct App {
     crashed_s: f64,
     straight_in: bool,
     quitting: bool,
+    still: drawing::Still,
     began: Instant,
     /// Frames of the 3-D picture so far.
     drawn: u64,
@@ -114,6 +115,7 @@ impl App {
             drag: None,
             crashed_s: 0.0,
             quitting: false,
+            still: drawing::Still::default(),
             began: Instant::now(),
             drawn: 0,
             revived: false,
@@ -205,6 +207,7 @@ impl App {
                 let flight = Flight::new(world);
                 self.input.adopt(&flight.readout);
                 self.flight = Some(flight);
+                self.still = drawing::Still::default();
                 self.watch_system();
                 self.clock.rest();
                 self.crashed_s = 0.0;
@@ -367,10 +370,10 @@ impl ApplicationHandler for App {
         };
         match Canvas::open(window, self.backend(), &self.settings.video) {
             Ok(canvas) => {
-                // A processor that draws takes a quarter of the time for a picture of half the width; the player may raise it.
+                // A processor that draws takes an eighth of the time for a picture of a third of the width; the player may raise it.
                 if canvas.gpu.info.device_type == wgpu::DeviceType::Cpu && !self.opening.data.join(crate::settings::FILE).exists() {
-                    self.settings.video.render_scale = 0.5;
-                    self.hud.notice("No graphics card was found: the picture is drawn at half resolution (Settings > Picture)");
+                    self.settings.video.render_scale = 0.35;
+                    self.hud.notice("No graphics card was found: the picture is drawn at a third of the resolution (Settings > Picture)");
                 }
                 self.canvas = Some(canvas);
             }

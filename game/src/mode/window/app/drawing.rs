@@ -9,7 +9,27 @@ use crate::view::{Picture, Rig, snapshot};
 use crate::world::World;
 use engine::render::{OffscreenImage, RenderError, Target};
 use engine::scene::{AutoOr, Force};
+use engine::time::SimTime;
 use engine::units::DEG;
+use std::time::Instant;
+
+/// How long a picture stands behind a menu where drawing is slow, s.
+const STILL_S: f64 = 5.0;
+
+/// The picture behind a menu: nothing moves there, so that a smaller image is drawn again only when something has changed, and
+/// now and then for the exposure's sake. A processor that draws would else be too slow for its own menus.
+#[derive(Default)]
+pub(super) struct Still {
+    taken: Option<(Instant, Rig, [u32; 2], SimTime)>,
+}
+
+impl Still {
+    fn holds(&self, screen: Screen, rig: &Rig, size_px: [u32; 2], world: &World) -> bool {
+        let menu = matches!(screen, Screen::Main | Screen::Starts | Screen::Saves | Screen::Options | Screen::Pause);
+        let Some((at, its_rig, its_size, time)) = &self.taken else { return false };
+        menu && its_rig == rig && *its_size == size_px && *time == world.time && at.elapsed().as_secs_f64() < STILL_S
+    }
+}
 
 impl App {
     /// The World that is drawn: the flight's own, or a copy with the clock moved, or a pose before the crash.
@@ -42,12 +62,14 @@ impl App {
         let Next::Picture(texture) = canvas.acquire() else { return Ok(()) };
         let view = texture.texture.create_view(&wgpu::TextureViewDescriptor::default());
         let world = copy.as_ref().unwrap_or(&flight.session.world);
+        let time = world.time;
         let covered = matches!(self.hud.screen, Screen::Map | Screen::Surface);
         let scaled = canvas.scaled(self.settings.video.render_scale);
         let size_px = scaled.as_ref().map_or_else(|| canvas.size(), |(image, _)| image.size);
         let alpha = if self.hud.screen.runs() { self.clock.alpha() } else { 0.0 };
         let picture = Picture { size_px, alpha, adapt_s: Some(bounded(dt_s)), force: Force::default() };
-        let scene = (!covered).then(|| snapshot(world, &rig, &picture).0);
+        let held = scaled.is_some() && !covered && self.still.holds(self.hud.screen, &rig, size_px, world);
+        let scene = (!covered && !held).then(|| snapshot(world, &rig, &picture).0);
 
         let mut reply = Reply::default();
         let readout = copy.as_ref().map_or_else(|| flight.readout.clone(), World::readout);
@@ -82,6 +104,7 @@ impl App {
         canvas.gpu.queue.present(texture);
         self.revived = false;
         if scene.is_some() {
+            self.still = Still { taken: Some((Instant::now(), rig, size_px, time)) };
             if self.drawn == 0 && canvas.gpu.wait().is_ok() {
                 tracing::info!("first picture after {:.1} s", self.began.elapsed().as_secs_f64());
             }
