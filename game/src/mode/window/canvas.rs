@@ -227,5 +227,9 @@ fn configuration(gpu: &Gpu, surface: &wgpu::Surface<'_>, size: [u32; 2], vsync: 
     });
     config.format = format;
     config.present_mode = present_mode(vsync);
+    if gpu.info.device_type == wgpu::DeviceType::Cpu {
+        // Frames that take long are not queued on top of each other: what is pressed would show several of them later.
+        config.desired_maximum_frame_latency = 1;
+    }
     config
 }
