@@ -330,7 +330,10 @@ fn legend(ctx: &egui::Context, scene: &Scene<'_>, view: &mut MapView, focus: Bod
                 let parent = scene.world.system.body(focus).parent;
                 if ui.add_enabled(parent.is_some(), egui::Button::new("Outward")).clicked() {
                     view.focus = parent;
-                    view.metres_per_point *= 30.0;
+                    // So far off that the path of the body that was looked at fits.
+                    let sky = Sky::at(&scene.world.system, scene.world.time);
+                    let reach = parent.map_or(0.0, |p| (sky.position(focus) - sky.position(p)).length());
+                    view.metres_per_point = reach / f64::from(0.42 * ctx.content_rect().height().max(1.0));
                     view.pan = Vec2::ZERO;
                 }
                 if ui.add_enabled(scene.readout.target.is_some(), egui::Button::new("No target")).clicked() {

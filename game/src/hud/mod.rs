@@ -257,7 +257,7 @@ impl Hud {
             });
         }
         if let Some(text) = &self.fault {
-            panels::area(ctx, "fault", egui::Align2::CENTER_TOP, [0.0, 64.0], |ui| {
+            panels::area(ctx, "fault", egui::Align2::CENTER_TOP, [0.0, 104.0], |ui| {
                 style::panel(0.92).show(ui, |ui| {
                     ui.set_max_width(760.0);
                     ui.label(egui::RichText::new("A changed file is broken; the last good one stays in force").color(style::DANGER));
