@@ -130,7 +130,7 @@ fn scenes(size: [u32; 2]) -> Vec<(&'static str, Snapshot)> {
         scene(size, Vec3::new(0.35, 0.93, -0.06), Vec3::Z, vec![body(3, DVec3::new(0.0, 0.0, -6.371_004e6), 6.371e6, blue, sun)], sun);
     landed.ships = vec![Ship {
         height_above_ground_m: 3.4,
-        ..ship(Vec3::new(10.0, 28.0, -0.6), Quat::from_rotation_z(2.3) * Quat::from_rotation_x(1.5708), 0.0, 1.0)
+        ..ship(Vec3::new(10.0, 28.0, -0.6), Quat::from_rotation_z(2.3) * Quat::from_rotation_x(core::f32::consts::FRAC_PI_2), 0.0, 1.0)
     }];
     let sunlit = scene(size, to_sun, Vec3::Z, vec![body(3, below, 6.371e6, blue, sun)], sun);
     vec![

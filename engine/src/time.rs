@@ -68,12 +68,8 @@ impl SimTime {
     #[allow(clippy::cast_possible_truncation)]
     pub fn from_utc(civil: CivilTime) -> Self {
         let utc_s = civil.utc_seconds();
-        let mut t = Self { ticks: (utc_s * TICKS_PER_SECOND as f64).round() as i64 };
-        // TDB − UTC depends on the instant: two rounds settle it but within the leap second itself.
-        for _ in 0..2 {
-            t = Self { ticks: ((utc_s + tdb_minus_utc(t)) * TICKS_PER_SECOND as f64).round() as i64 };
-        }
-        t
+        let tai_minus_utc = LEAP.iter().rev().find(|(date, _)| midnight(*date) <= utc_s).map_or(LEAP[0].1, |(_, offset)| *offset);
+        Self { ticks: ((utc_s + tai_minus_utc + TT_MINUS_TAI) * TICKS_PER_SECOND as f64).round() as i64 }
     }
 }
 
@@ -109,17 +105,19 @@ const LEAP: [((i32, u32, u32), f64); 28] = [
     ((2017, 1, 1), 37.0),
 ];
 
+/// TT − TAI, s (exact).
+const TT_MINUS_TAI: f64 = 32.184;
+
+/// Seconds from 2000-01-01 12:00:00 UTC to the midnight that begins a date, leap seconds not counted.
+fn midnight((year, month, day): (i32, u32, u32)) -> f64 {
+    CivilTime { year, month, day, hour: 0, minute: 0, second: 0.0 }.utc_seconds()
+}
+
 /// TDB − UTC, in seconds. Before 1972 the first entry is held (UTC as it is defined now did not exist).
 pub fn tdb_minus_utc(t: SimTime) -> f64 {
     let s = t.seconds();
-    let mut tai_minus_utc = LEAP[0].1;
-    for ((y, m, d), offset) in LEAP {
-        let start = CivilTime { year: y, month: m, day: d, hour: 0, minute: 0, second: 0.0 }.utc_seconds() + offset + 32.184;
-        if s >= start {
-            tai_minus_utc = offset;
-        }
-    }
-    tai_minus_utc + 32.184
+    let begun = |(date, offset): &&((i32, u32, u32), f64)| midnight(*date) + offset + TT_MINUS_TAI <= s;
+    LEAP.iter().rev().find(begun).map_or(LEAP[0].1, |(_, offset)| *offset) + TT_MINUS_TAI
 }
 
 /// A proleptic Gregorian calendar date with time of day.
