@@ -220,8 +220,9 @@ fn finish_landing(ship: &mut Ship, report: &Report, state: &BodyState) {
         Guidance::VerticalSpeed { cm_s } => cm_s < 0,
         Guidance::Manual | Guidance::Hover => false,
     };
-    let feet = ship.ground.contact.legs.iter().filter(|l| l.hold_m.is_some()).count();
-    if down && report.touching && (feet >= 3 || !ship.gear_down) && state.velocity.length() < STANDING_M_S {
+    // One foot is enough: on a slope the hold would keep the ship level on it for ever, its engine at idle.
+    let stands = ship.ground.contact.legs.iter().any(|l| l.hold_m.is_some()) || !ship.gear_down;
+    if down && report.touching && stands && state.velocity.length() < STANDING_M_S {
         ship.guidance = Guidance::Manual;
         ship.landing = None;
         ship.throttle = 0;
