@@ -1,5 +1,6 @@
 // Smooth bodies: a sphere ray-traced inside a quad that bounds it. Rust side: engine/src/render/pass/smooth_body.rs.
 
+#include "lib/lamps.wgsl"
 #include "lib/frame.wgsl"
 #include "lib/sphere.wgsl"
 #include "lib/lambert.wgsl"
@@ -20,7 +21,6 @@
 @group(2) @binding(1) var night_map: texture_2d<f32>;
 @group(2) @binding(2) var map_sampler: sampler;
 
-const NIGHT_CD_M2: f32 = 4.0;   // BodyMaps::NIGHT_CD_M2
 
 struct Varying {
     @builtin(position) position: vec4<f32>,
@@ -87,7 +87,7 @@ fn fragment(in: Varying) -> Output {
     let dx = select(dpdx(wrapped), dpdx(uv), abs(dpdx(uv.x)) < abs(dpdx(wrapped.x)));
     let dy = select(dpdy(wrapped), dpdy(uv), abs(dpdy(uv.x)) < abs(dpdy(wrapped.x)));
     let map = textureSampleGrad(albedo_map, map_sampler, uv, dx, dy).rgb;
-    let night = textureSampleGrad(night_map, map_sampler, uv, dx, dy).rgb;
+    let night = lamps(textureSampleGrad(night_map, map_sampler, uv, dx, dy).rgb);
     if cover <= 0.0 || hit.distance <= 0.0 {
         discard;
     }
@@ -102,7 +102,7 @@ fn fragment(in: Varying) -> Output {
     let open = ship_shadow(shadow, shadow_map, shadow_compare, ray * hit.distance, body.sun.w);
     let lit = light.sun * (open * sun_cosine(dot(normal, body.sun.xyz), body.sun.w)) + light.sky;
     var luminance = albedo / PI * body.illuminance.rgb * lit;
-    luminance += night * NIGHT_CD_M2;
+    luminance += night;
 
     var out: Output;
     out.colour = vec4<f32>(to_hdr(luminance, exposure.pre) * cover, 1.0);

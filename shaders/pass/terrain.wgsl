@@ -1,6 +1,7 @@
 // Terrain: tiles of 32 × 32 quads, displaced from heights computed once, morphing into their parents; materials and light.
 // Rust side: engine/src/render/pass/terrain.rs. Air between eye and ground is laid over by pass/sky.wgsl.
 
+#include "lib/lamps.wgsl"
 #include "lib/frame.wgsl"
 #include "lib/tile.wgsl"
 #include "lib/ground.wgsl"
@@ -26,7 +27,6 @@
 
 const STORED: u32 = 67u;
 const SIDE: u32 = 33u;
-const NIGHT_CD_M2: f32 = 4.0;   // BodyMaps::NIGHT_CD_M2
 const NEAR_M: f32 = 16.0;        // PAINT_M[0]
 const STARLIGHT_LX: f32 = 1e-3;
 const SEA_SLOPES: f32 = 0.034;  // mean square slope of the sea at 6 m/s [Cox & Munk 1954]: 0.003 + 0.00512 · 6
@@ -180,8 +180,7 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
     let lod = log2(max(distance * frame.up.w / max(dot(view, up), 0.3) / texel, 1e-6));
     // Not the anisotropic sampler of the maps: with an explicit level, software drivers take hundreds of taps for it.
     let mapped = textureSampleLevel(albedo_map, linear, uv, max(lod, 0.0)).rgb;
-    // The darkest part of a picture of the night is moonlight and film, not lamps.
-    let night = max(textureSampleLevel(night_map, linear, uv, max(lod, 0.0)).rgb - 0.03, vec3<f32>(0.0));
+    let night = lamps(textureSampleLevel(night_map, linear, uv, max(lod, 0.0)).rgb);
     let tint = select(body.albedo.rgb, mapped, paint.kind.w > 0u);
     let slope = length(gradient);
     let near = 1.0 - smoothstep(2.0e4, 4.0e5, distance);
@@ -216,7 +215,7 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
         }
         // Hollows see less of the sky: half-way between open ground and the slope's own share.
         luminance = max(m.albedo, vec3<f32>(0.0)) / PI * (direct * lit + sky * (0.5 + 0.5 * dot(normal, up)));
-        luminance += night * NIGHT_CD_M2 * (1.0 - smoothstep(-0.1, 0.05, mu_s));
+        luminance += night * (1.0 - smoothstep(-0.1, 0.05, mu_s));
     }
     return vec4<f32>(to_hdr(luminance, exposure.pre), 1.0);
 }

@@ -25,8 +25,8 @@ pub struct BodyMaps {
 }
 
 impl BodyMaps {
-    /// Luminance of the brightest texel of a night map, cd/m²: a lit city centre seen from above.
-    pub const NIGHT_CD_M2: f32 = 4.0;
+    /// Luminance of the brightest texel of a night map, cd/m²: a city, 100 nW/(cm² sr) averaged over kilometres at 300 lm/W.
+    pub const NIGHT_CD_M2: f32 = 0.3;
 }
 
 /// The maps of one body on the GPU; a 1 × 1 white (albedo) or black (night) texel where there is none.
