@@ -86,24 +86,6 @@ fn mirrored_structs_have_the_layout_of_their_twins() {
         ("pass/sky_probe.wgsl", "ProbeLight", fields!(ProbeLight { radiance, transmittance })),
         ("lib/shadow.wgsl", "Shadow", fields!(rust::ShadowUniform { map_from_icrf, shape })),
         ("lib/ship.wgsl", "Ship", fields!(rust::ShipInstance { centre, hull_x, hull_y, hull_z, state })),
-        (
-            "lib/medium.wgsl",
-            "Air",
-            fields!(rust::AirUniform {
-                shape,
-                albedo,
-                scattering,
-                extinction,
-                inverse_height,
-                tent_bottom,
-                tent_rise,
-                tent_top,
-                tent_fall,
-                asymmetry
-            }),
-        ),
-        ("lib/medium.wgsl", "Airs", fields!(rust::AirsUniform { list })),
-        ("pass/sky.wgsl", "Sky", fields!(rust::SkyUniform { order, counts })),
         ("lib/height.wgsl", "Octave", fields!(ground::OctaveUniform { cell_m, weight, flat_floor, density, seed, pad0, pad1, pad2 })),
         ("lib/height.wgsl", "MapShape", fields!(ground::MapShapeUniform { bits, scale, offset, pad })),
         (
