@@ -1,10 +1,10 @@
-//! Integrate: explicit Runge–Kutta methods as tables of coefficients, and the one loop that runs them all.
+//! Explicit Runge–Kutta methods as tables of coefficients, and the one loop that runs them all.
 //!
 //! For powered flight at the fixed tick: no allocation, no adaptive step, so the same bits always. A coasting ship is not
 //! integrated at all: see `arc`.
 //! - [Hairer, Nørsett & Wanner 1993] "Solving Ordinary Differential Equations I", tables II.1.2 (RK4) and II.5.2 (DOPRI5).
 
-use super::State;
+use crate::orbit::State;
 use crate::space::{Frame, Position, Vector, Velocity};
 use glam::DVec3;
 
