@@ -1,12 +1,14 @@
 //! Orbits: how a state moves under gravity. Pure f64, cited, tested.
 //!
 //! Read [`state`], then [`kepler`] (two-body propagation), [`elements`], [`rotation`] (where a body's axes point),
-//! [`ephemeris`] (position and velocity of body B at time t: the narrow interface), [`arc`] (a coasting ship's path), [`events`] (the tick at which it meets something).
+//! [`ephemeris`] (position and velocity of body B at time t: the narrow interface), [`arc`] (a coasting ship's path), [`events`] (the tick at which it meets something),
+//! [`field`] (which terms of gravity count for a ship).
 
 pub mod arc;
 pub mod elements;
 pub mod ephemeris;
 pub mod events;
+pub mod field;
 pub mod gravity;
 pub mod integrate;
 pub mod kepler;
