@@ -73,6 +73,46 @@ impl SimTime {
     }
 }
 
+/// An instant that need not be a tick: seconds beyond one. The pair keeps every digit far from J2000 (at 26 years one ulp of
+/// seconds is 0.1 µs: millimetres of the Earth's path).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Moment {
+    /// The tick at or before it.
+    pub tick: SimTime,
+    /// Seconds after the tick, 0 … [`TICK_S`].
+    pub beyond_s: f64,
+}
+
+impl Moment {
+    /// `s` seconds after a tick; any finite `s` within ±1e13.
+    #[allow(clippy::cast_possible_truncation)]
+    pub fn after(tick: SimTime, s: f64) -> Self {
+        let whole = (s * TICKS_PER_SECOND as f64).floor();
+        Self { tick: tick.plus(whole as i64), beyond_s: (s - whole / TICKS_PER_SECOND as f64).max(0.0) }
+    }
+
+    /// This moment moved by `s` seconds.
+    pub fn plus_s(self, s: f64) -> Self {
+        Self::after(self.tick, self.beyond_s + s)
+    }
+
+    /// `self − earlier`, s.
+    pub fn since(self, earlier: Self) -> f64 {
+        self.tick.since(earlier.tick) + (self.beyond_s - earlier.beyond_s)
+    }
+
+    /// The first tick that is not before this moment.
+    pub fn next_tick(self) -> SimTime {
+        if self.beyond_s > 0.0 { self.tick.plus(1) } else { self.tick }
+    }
+}
+
+impl From<SimTime> for Moment {
+    fn from(tick: SimTime) -> Self {
+        Self { tick, beyond_s: 0.0 }
+    }
+}
+
 /// Leap seconds: `(UTC seconds since J2000.0 12:00 UTC, TAI − UTC)`. Source: IERS Bulletin C (last entry 2017-01-01).
 const LEAP: [((i32, u32, u32), f64); 28] = [
     ((1972, 1, 1), 10.0),
@@ -242,6 +282,16 @@ mod tests {
         assert_eq!((utc.year, utc.month, utc.day, utc.hour, utc.minute), (2026, 8, 12, 17, 45));
         assert!((utc.second - 56.8).abs() < 0.2, "{}", utc.second);
         assert!((SimTime::from_utc(utc).since(SimTime::from_jd_tdb(2_461_265.241_041_667))).abs() <= TICK_S);
+    }
+
+    #[test]
+    fn a_moment_keeps_its_digits_decades_from_the_origin() {
+        let start = Moment::from(SimTime::from_jd_tdb(2_461_265.25));
+        let later = start.plus_s(1234.567_890_123);
+        assert!((later.since(start) - 1234.567_890_123).abs() < 1e-12);
+        assert!((0.0..TICK_S).contains(&later.beyond_s) && later.next_tick() > later.tick);
+        assert!(later.plus_s(-1234.567_890_123).since(start).abs() < 1e-12);
+        assert_eq!(start.plus_s(0.5), Moment::from(start.tick.plus(30)));
     }
 
     #[test]
