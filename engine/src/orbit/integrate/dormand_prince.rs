@@ -74,8 +74,8 @@ pub struct Embedded {
 
 impl Embedded {
     /// For `n` points. `tolerance` bounds the estimated error of a step relative to each point's distance from the origin (and
-    /// how far it goes in a step), and so for velocities; what is not a positive number counts as 1e-12. `dense` asks for dense
-    /// output, at three more evaluations a step.
+    /// how far it goes in a step), and so for velocities; what is not a positive number counts as 1e-12, and less than 1e-15 (where the
+    /// estimate is rounding) as that. `dense` asks for dense output, at three more evaluations a step.
     pub fn new(pair: Pair, n: usize, tolerance: f64, dense: bool) -> Self {
         let a = pair.table.a;
         let weigh = |weights: &[f64]| -> Vec<f64> {
@@ -85,7 +85,7 @@ impl Embedded {
         let end_error = end.iter().zip(weigh(pair.low)).map(|(b, low)| b - low).collect();
         let mut new = Self {
             pair,
-            tolerance: if tolerance > 0.0 && tolerance.is_finite() { tolerance } else { 1e-12 },
+            tolerance: if tolerance > 0.0 && tolerance.is_finite() { tolerance.max(1e-15) } else { 1e-12 },
             bend: a.iter().map(|row| weigh(row)).collect(),
             end,
             end_error,

@@ -6,6 +6,7 @@
 //! - [`gauss_radau`]: order 15, adaptive, with velocities: the all-rounder for close encounters and odd forces.
 //! - [`dormand_prince`]: explicit pairs of orders 5 and 8, adaptive.
 //! - [`composition`]: symplectic, of fixed step, orders 2 to 8.
+//! - [`wisdom_holman`]: Kepler orbits and kicks, moons in a hierarchy of their own, correctors.
 //! - [`sums`]: additions and products that keep what rounding drops.
 //!
 //! Not here: what attracts whom ([`super::gravity`]), closed forms ([`super::kepler`]).
@@ -15,6 +16,7 @@ pub mod dormand_prince;
 pub mod gauss_radau;
 pub mod runge_kutta;
 pub mod sums;
+pub mod wisdom_holman;
 
 use glam::DVec3;
 

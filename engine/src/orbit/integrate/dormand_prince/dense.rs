@@ -41,6 +41,7 @@ impl Dense {
     }
 
     /// Fits the polynomial to the end of the step; returns evaluations made.
+    #[allow(clippy::needless_range_loop, reason = "i is a point of eight lists")]
     pub(super) fn finish<F: Force>(&mut self, force: &F, points: &Points, a: &[f64]) -> u64 {
         let (n, dt) = (points.q.len(), self.dt);
         self.q.resize(n, DVec3::ZERO);
