@@ -3,10 +3,12 @@
 //! A method is a record of coefficients and one loop. An adaptive one owns its buffers, takes its natural steps, and answers
 //! for any time inside the last step (dense output): whoever looks at a path samples it and never changes it.
 //! - [`runge_kutta`]: fixed tables, for powered flight at the tick.
+//! - [`series`]: arithmetic of power series, the parts of every Taylor method.
 //!
 //! Not here: what attracts whom ([`super::gravity`]), closed forms ([`super::kepler`]).
 
 pub mod runge_kutta;
+pub mod series;
 
 use glam::DVec3;
 
