@@ -1,7 +1,8 @@
 //! Kepler's problem against closed forms, REBOUND's regimes (`reference/kepler_rebound.csv`) and 30-digit anchors.
 
 use super::*;
-use crate::space::Centred;
+use crate::space::{Centred, Position, Velocity};
+use glam::DVec3;
 
 type S = State<Centred>;
 
