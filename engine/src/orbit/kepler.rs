@@ -10,6 +10,7 @@
 
 mod conic;
 mod guess;
+mod orbit;
 mod pair;
 mod solve;
 mod universal;
@@ -18,14 +19,23 @@ pub use conic::Conic;
 pub(crate) use universal::Universal;
 
 use super::State;
-use crate::space::Frame;
+use crate::space::{Frame, Position, Velocity};
+use conic::Scaled;
+use glam::DVec3;
 
 /// State after `dt_s` seconds of two-body motion about a point of gravitational parameter `gm` (m³/s²).
 ///
 /// Any finite `dt_s`; whole revolutions are taken off first. Where there is no centre to fall to (`gm ≤ 0`, or a position
 /// at the origin) the motion is a straight line. A radial fall goes through the centre and comes back where it came from.
 pub fn propagate<F: Frame>(gm: f64, state: &State<F>, dt_s: f64) -> State<F> {
-    Conic::new(gm, state.position.0, state.velocity.0).after(dt_s)
+    let (r, v) = propagate_raw(gm, state.position.0, state.velocity.0, dt_s);
+    State { position: Position::new(r), velocity: Velocity::new(v) }
+}
+
+/// As [`propagate`], for callers that keep their own frame.
+pub fn propagate_raw(gm: f64, r0: DVec3, v0: DVec3, dt_s: f64) -> (DVec3, DVec3) {
+    let scaled = Scaled::new(gm, r0, v0);
+    scaled.after(dt_s, || scaled.orbit.turn(), || scaled.orbit.pericentre())
 }
 
 #[cfg(test)]

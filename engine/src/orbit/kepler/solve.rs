@@ -1,12 +1,15 @@
 //! The root of Kepler's equation in the universal anomaly.
 
-use super::conic::Orbit;
-use super::guess::Pericentre;
+use super::guess::{self, Pericentre};
+use super::orbit::Orbit;
 use super::pair::{self, Pair};
-use super::universal::Universal;
+use super::universal::{Exact, FARTHEST, Universal};
+use glam::DVec3;
 
 /// A step whose every term is below this is taken inside the functions themselves: what is left is of its cube.
 const SMALL: f64 = 1e-9;
+/// Below this the next step will be small: its error goes as the fifth power.
+const CLOSE: f64 = 0.01;
 /// Above this the series of the step is not trusted.
 const LARGE: f64 = 0.1;
 /// Steps after which the bracket alone has settled any root.
@@ -14,92 +17,129 @@ const MOST_STEPS: u32 = 200;
 
 /// One step of the solver.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Step {
-    pub(super) s: f64,
+struct Step {
+    /// The change of s.
+    d: f64,
     /// The square of the step as a part of the length over which the orbit changes: says how fast the series converges.
-    pub(super) square: f64,
-    pub(super) miss: f64,
-    pub(super) radius: f64,
-    pub(super) bend: f64,
+    square: f64,
+    /// Time too much.
+    miss: f64,
+    radius: f64,
+    /// dr/ds.
+    bend: f64,
 }
 
 impl Orbit {
-    /// How far Kepler's equation is from fulfilled, r₀G₁ + η₀G₂ + μG₃ − Δt, its products and sums exact.
     #[inline(always)]
-    pub(super) fn miss(&self, g: &Universal, dt: Pair) -> f64 {
-        let (a, b, c) = (pair::product(self.distance.hi, g.g1), pair::product(self.eta.hi, g.g2), pair::product(self.mu, g.g3));
-        let s = pair::sum(a.hi, b.hi);
-        let t = pair::sum(c.hi, -dt.hi);
-        let u = pair::sum(s.hi, t.hi);
-        let small = (self.distance.lo * g.g1 + self.eta.lo * g.g2) - dt.lo;
-        u.hi + ((u.lo + (s.lo + t.lo)) + ((a.lo + b.lo) + (c.lo + small)))
+    fn radius(&self, g: &Universal) -> f64 {
+        self.distance.value() + (self.eta.value() * g.g1 + self.zeta * g.g2)
     }
 
-    /// The step to the root as the series t(s) turned round, to the fourth power of the miss.
+    /// The step to the root as the series t(s) turned round, to the fourth power of the `miss`.
     #[inline(always)]
-    pub(super) fn step(&self, g: &Universal, dt: Pair) -> Step {
-        let miss = self.miss(g, dt);
+    fn step(&self, g: &Universal, miss: f64) -> Step {
         let radius = self.radius(g);
         let inverse = 1.0 / radius;
         // t′ = r, t″ = r′ = ηG₀ + ζG₁, t‴ = ζG₀ − βηG₁, t⁗ = −βt″.
-        let (eta, beta) = (self.eta.hi, self.beta.hi);
+        let (eta, beta) = (self.eta.value(), self.beta.value());
         let bend = eta * g.g0 + self.zeta * g.g1;
         let third = self.zeta * g.g0 - beta * (eta * g.g1);
         let u = -miss * inverse;
-        let a = 0.5 * bend * inverse * u;
-        let b = third * inverse * (u * u) * (1.0 / 6.0);
-        let c = -beta * (u * u) * (a * (1.0 / 12.0));
-        // δ = u(1 − a + 2a² − b + 5ab − 5a³ − c).
-        let tail = a - (2.0 * a * a - b) - (a * (5.0 * (b - a * a)) - c);
-        let square = (a * a).max(b.abs()).max((beta * (u * u)).abs());
-        Step { s: u * (1.0 - tail), square, miss, radius, bend }
+        let (half, uu) = (inverse * u, u * u);
+        let a = 0.5 * bend * half;
+        let b = third * inverse * uu * (1.0 / 6.0);
+        let buu = beta * uu;
+        // δ = u(1 − a + 2a² − b + 5ab − 5a³ − c), c = −βu²a/12.
+        let aa = a * a;
+        let tail = (a - (aa + aa - b)) - a * (5.0 * (b - aa) + buu * (1.0 / 12.0));
+        Step { d: u - u * tail, square: aa.max(b.abs()).max(buu.abs()), miss, radius, bend }
     }
 
-    /// The functions a small `d` further on.
+    /// The step from `s` in plain arithmetic.
     #[inline(always)]
-    pub(super) fn moved(&self, g: &Universal, d: f64) -> Universal {
-        let (beta, half, third) = (self.beta.hi, 0.5 * d, d * (1.0 / 3.0));
-        // Gₙ′ = Gₙ₋₁ and G₀′ = −βG₁.
-        let (down1, down0) = (-beta * g.g0, -beta * g.g1);
-        let taylor = |slope: f64, second: f64, third_slope: f64| d * (slope + half * (second + third * third_slope));
-        Universal {
-            g0: g.g0 + taylor(down0, down1, -beta * down0),
-            g1: g.g1 + taylor(g.g0, down0, down1),
-            g2: g.g2 + taylor(g.g1, g.g0, down0),
-            g3: g.g3 + taylor(g.g2, g.g1, g.g0),
-        }
+    fn rough(&self, s: f64, dt: f64) -> Step {
+        let g = Universal::at(self.beta.value(), s);
+        let miss = (self.distance.value() * g.g1 + self.eta.value() * g.g2) + (self.mu.value() * g.g3 - dt);
+        self.step(&g, miss)
     }
 
-    /// The universal functions after a time `dt` of at most half a revolution.
-    pub(super) fn solve(&self, pericentre: &Pericentre, dt: Pair) -> Universal {
-        let shape = self.shape();
-        let (near, bend) = shape.nearby(dt.hi);
-        let mut s = if bend < 0.2 { near } else { shape.around(pericentre, dt.hi) };
+    /// The state at the root near `s`, if it is near enough for one step inside the functions.
+    #[inline(always)]
+    fn finish(&self, s: f64, dt: (f64, f64)) -> (Step, DVec3, DVec3) {
+        let s = pair::shortened(s);
+        let exact = if self.beta.value() * (s * s) >= FARTHEST {
+            Exact::near(self.beta, s)
+        } else {
+            let (root, inverse) = self.beta.scaled(-1.0).root();
+            Exact::far(self.beta, root, inverse, s)
+        };
+        // r₀G₁ + η₀G₂ + μG₃ − Δt, the sum of the first two also being g, the share of the velocity in the new position.
+        let (gee, gee_lo) = pair::combined(self.distance, exact.g1, self.eta, exact.g2);
+        let (c, c_lo) = self.mu.product(exact.g3);
+        let (t, t_lo) = pair::sum(c, -dt.0);
+        let (miss, miss_lo) = pair::sum(gee, t);
+        let g = exact.rounded();
+        let step = self.step(&g, miss + (miss_lo + ((t_lo + gee_lo) + (c_lo - dt.1))));
+        // Gₙ′ = Gₙ₋₁ and G₀′ = −βG₁: the functions at s + d by Taylor's series.
+        let (d, beta, distance, eta) = (step.d, self.beta.value(), self.distance.value(), self.eta.value());
+        let (half, third) = (0.5 * d, d * (1.0 / 3.0));
+        let taylor = |a: f64, b: f64, c: f64| d * (a + half * (b + third * c));
+        let (down0, down1) = (-beta * g.g1, -beta * g.g0);
+        let slope = distance * g.g0 + eta * g.g1;
+        let gee = Pair::settled(gee, gee_lo + taylor(slope, distance * down0 + eta * g.g0, -beta * slope));
+        let g1 = Pair::settled(exact.g1.hi, exact.g1.lo + taylor(g.g0, down0, down1));
+        let g2 = Pair::settled(exact.g2.hi, exact.g2.lo + taylor(g.g1, g.g0, down0));
+        let f_less_one = self.pull.times(g2).scaled(-1.0);
+        let moved = |k: usize| {
+            let (way, way_lo) = pair::combined(self.r0.0[k], f_less_one, self.v0.0[k], gee);
+            let (end, end_lo) = pair::sum(way, self.r0.0[k].value());
+            end + (end_lo + way_lo)
+        };
+        let r = DVec3::new(moved(0), moved(1), moved(2));
+        // Regularised: at the very centre r = 0, where only the velocity has no value.
+        let inverse = 1.0 / r.length().max(1e-30);
+        let (a, b) = (self.pull.times(g1), self.mu.times(g2));
+        let turned = |k: usize| {
+            let (way, way_lo) = pair::combined(self.r0.0[k], a, self.v0.0[k], b);
+            self.v0.0[k].value() - (way + way_lo) * inverse
+        };
+        (step, r, DVec3::new(turned(0), turned(1), turned(2)))
+    }
+
+    /// Position and velocity after a time `dt` (in two words) of at most half a revolution.
+    #[inline(always)]
+    pub(super) fn after(&self, dt: (f64, f64), pericentre: impl FnOnce() -> Pericentre) -> (DVec3, DVec3) {
+        let (near, bend) = guess::nearby(self, dt.0);
+        let mut s = if bend < 0.2 { near } else { pericentre().around(self, dt.0) };
         for _ in 0..4 {
-            let g = Universal::at(self.beta.hi, s);
-            let step = self.step(&g, dt);
-            if step.square < SMALL {
-                return self.moved(&g, step.s);
-            }
+            let step = self.rough(s, dt.0);
             if !(step.square < LARGE) {
                 break;
             }
-            s += step.s;
+            s += step.d;
+            if step.square < CLOSE {
+                let (step, r, v) = self.finish(s, dt);
+                if step.square < SMALL {
+                    return (r, v);
+                }
+            }
         }
-        self.search(s, dt)
+        self.slowly(s, dt)
     }
 
-    /// As [`Orbit::solve`] where the quick way failed: Halley's steps inside a bracket that only ever shrinks.
     #[cold]
-    fn search(&self, start: f64, dt: Pair) -> Universal {
-        let (mut low, mut high) = self.bracket(dt.hi);
+    fn slowly(&self, s: f64, dt: (f64, f64)) -> (DVec3, DVec3) {
+        let s = self.search(s, dt.0);
+        let (_, r, v) = self.finish(s, dt);
+        (r, v)
+    }
+
+    /// The root where the quick way failed: Halley's steps inside a bracket that only ever shrinks.
+    fn search(&self, start: f64, dt: f64) -> f64 {
+        let (mut low, mut high) = self.bracket(dt);
         let mut s = if start > low && start < high { start } else { 0.5 * (low + high) };
-        let mut g = Universal::at(self.beta.hi, s);
         for _ in 0..MOST_STEPS {
-            let step = self.step(&g, dt);
-            if step.square < SMALL {
-                return self.moved(&g, step.s);
-            }
+            let step = self.rough(s, dt);
             if step.miss > 0.0 {
                 high = s;
             } else if step.miss < 0.0 {
@@ -108,29 +148,27 @@ impl Orbit {
                 break;
             }
             let halley = -2.0 * step.miss * step.radius / (2.0 * step.radius * step.radius - step.miss * step.bend);
-            let d = if step.square < LARGE { step.s } else { halley };
-            let next = s + d;
+            let next = s + if step.square < LARGE { step.d } else { halley };
             let next = if next > low && next < high { next } else { 0.5 * (low + high) };
-            if next == s {
+            if next == s || step.square < SMALL {
                 break;
             }
             s = next;
-            g = Universal::at(self.beta.hi, s);
         }
-        g
+        s
     }
 
     /// An interval that holds the root, ends included.
     fn bracket(&self, dt: f64) -> (f64, f64) {
-        let beta = self.beta.hi;
+        let beta = self.beta.value();
         let far = if beta > 0.0 {
             // |E₁ − E₀| < 2π within half a period.
             core::f64::consts::TAU / beta.sqrt()
         } else {
             // r grows without bound: double until the time is passed.
-            let mut s = (dt / self.distance.hi).abs().max(f64::MIN_POSITIVE);
+            let mut s = (dt / self.distance.value()).abs().min(1.0 / (-beta).sqrt()).max(f64::MIN_POSITIVE);
             for _ in 0..2100 {
-                let t = self.miss(&Universal::at(beta, s.copysign(dt)), Pair::default());
+                let t = self.rough(s.copysign(dt), 0.0).miss;
                 if t.abs() >= dt.abs() || !t.is_finite() {
                     break;
                 }

@@ -1,8 +1,7 @@
 //! Kepler's problem against closed forms, REBOUND's regimes (`reference/kepler_rebound.csv`) and 30-digit anchors.
 
 use super::*;
-use crate::space::{Centred, Position, Velocity};
-use glam::DVec3;
+use crate::space::Centred;
 
 type S = State<Centred>;
 

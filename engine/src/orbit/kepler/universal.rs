@@ -5,6 +5,8 @@
 //! - [Battin 1999] "An Introduction to the Mathematics and Methods of Astrodynamics", §4.5–4.8 (universal functions).
 //! - [Stumpff 1959] "Himmelsmechanik I", §41 (the series c₂, c₃ and their doubling).
 
+use super::pair::{Pair, ordered_sum};
+
 /// The universal functions at one s: G₀ = cos √β s, G₁ = ∫G₀, G₂ = ∫G₁, G₃ = ∫G₂ [Battin 1999, §4.5].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Universal {
@@ -14,9 +16,16 @@ pub(crate) struct Universal {
     pub(crate) g3: f64,
 }
 
-/// |βs²| up to which the series serve alone, and with one doubling.
-pub(super) const PLAIN: f64 = 5.0625;
-pub(super) const DOUBLED: f64 = 4.0 * PLAIN;
+/// x = βs² up to which the series serve alone (cos and cosh then stay of one size), and four times that with one doubling:
+/// enough for the 4.43 rad that half a revolution can take.
+const PLAIN: f64 = 5.0625;
+const PLAIN_BELOW: f64 = -4.0;
+pub(super) const FARTHEST: f64 = 4.0 * PLAIN_BELOW;
+
+#[inline(always)]
+fn is_plain(x: f64) -> bool {
+    (PLAIN_BELOW..=PLAIN).contains(&x)
+}
 
 /// 1/(2k + 2)! and 1/(2k + 3)!, k = 0 …: twelve leave 1e-18 at |x| = 5.1.
 const C2: [f64; 12] = inverse_factorials(2);
@@ -37,6 +46,11 @@ const fn inverse_factorials(first: usize) -> [f64; 12] {
     table
 }
 
+/// What 1/3! lacks as f64, and 1/4!, 1/5! in two words.
+const C3_LO: f64 = 9.251_858_538_542_97e-18;
+const C2_SECOND: Pair = Pair { hi: 0.041666666977107525, lo: -3.104408582051595e-10 };
+const C3_SECOND: Pair = Pair { hi: 0.008333333302289248, lo: 3.104408582051595e-11 };
+
 /// Σ (−x)ᵏ c[k], even and odd powers apart, so that the processor runs both at once.
 #[inline(always)]
 fn alternating(c: &[f64; 12], x: f64, xx: f64) -> f64 {
@@ -49,7 +63,7 @@ impl Universal {
     /// At any β and s, overflow held off (|√−β s| is taken as 700 at most).
     pub(crate) fn at(beta: f64, s: f64) -> Self {
         let x = beta * s * s;
-        if x.abs() <= DOUBLED {
+        if (FARTHEST..=4.0 * PLAIN).contains(&x) {
             Self::near(beta, s)
         } else if x > 0.0 {
             Self::turning(beta, s)
@@ -58,11 +72,11 @@ impl Universal {
         }
     }
 
-    /// By series, for |βs²| ≤ [`DOUBLED`]: at s, or at s/2 and doubled, where nothing cancels for √β s < 2π.
+    /// By series, for −16 ≤ βs² ≤ 20.25: at s, or at s/2 and doubled, where nothing cancels for √β s < 2π.
     #[inline(always)]
     pub(super) fn near(beta: f64, s: f64) -> Self {
         let whole = beta * s * s;
-        let plain = whole.abs() <= PLAIN;
+        let plain = is_plain(whole);
         let h = if plain { s } else { 0.5 * s };
         let x = if plain { whole } else { 0.25 * whole };
         let (xx, hh) = (x * x, h * h);
@@ -99,6 +113,89 @@ impl Universal {
         let g1 = ((grown - shrunk) * inverse).copysign(s);
         let square = inverse * inverse;
         Self { g0: cosh, g1, g2: (cosh - 1.0) * square, g3: (g1 - s) * square }
+    }
+}
+
+/// The universal functions to about 58 bits: for the last step, where an orbit's geometry would multiply their rounding.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Exact {
+    pub(super) g0: f64,
+    pub(super) g1: Pair,
+    pub(super) g2: Pair,
+    pub(super) g3: Pair,
+}
+
+/// Σ (−x)ᵏ c[k]: the first two terms exactly, the others, which are small, plainly.
+#[inline(always)]
+fn exact_series(c: &[f64; 12], first_lo: f64, second: Pair, x: Pair) -> Pair {
+    let whole = x.value();
+    let xx = whole * whole;
+    let even = c[2] + xx * (c[4] + xx * (c[6] + xx * (c[8] + xx * c[10])));
+    let odd = c[3] + xx * (c[5] + xx * (c[7] + xx * (c[9] + xx * c[11])));
+    let (p, e) = second.product(x);
+    let (t, f) = ordered_sum(c[0], -p);
+    let (u, g) = ordered_sum(t, xx * (even - whole * odd));
+    Pair::new(u, ((f + g) + first_lo) - e)
+}
+
+impl Exact {
+    /// As [`Universal::near`]; `s` has no more than 26 bits.
+    #[inline(always)]
+    pub(super) fn near(beta: Pair, s: f64) -> Self {
+        let plain = is_plain(beta.value() * (s * s));
+        let h = if plain { s } else { 0.5 * s };
+        let hh = Pair::of(h * h);
+        let x = beta.times(hh);
+        let (c2, c3) = (exact_series(&C2, 0.0, C2_SECOND, x), exact_series(&C3, C3_LO, C3_SECOND, x));
+        let g2 = hh.times(c2);
+        let w = hh.times(c3);
+        let g3 = Pair::new(h * w.hi, h * w.lo);
+        // G₁ = s − βG₃, G₀ = 1 − βG₂.
+        let rest = |a: f64, g: Pair| {
+            let (p, e) = beta.product(g);
+            let (t, f) = ordered_sum(a, -p);
+            (t, f - e)
+        };
+        let (t, f) = rest(h, g3);
+        let g1 = Pair::new(t, f);
+        let (t, f) = rest(1.0, g2);
+        if plain {
+            return Self { g0: t + f, g1, g2, g3 };
+        }
+        let square = g1.times(g1).scaled(2.0);
+        Self {
+            g0: 1.0 - beta.value() * square.value(),
+            g1: Pair::settled(t, f).times(g1).scaled(2.0),
+            g2: square,
+            g3: g3.plus(g1.times(g2)).scaled(2.0),
+        }
+    }
+
+    /// As [`Universal::far`], √−β and its inverse given. The exponential is taken as it comes, which moves all by less than
+    /// a digit of s; only G₃ sees s itself, and there s is small beside G₁.
+    #[inline(always)]
+    pub(super) fn far(beta: Pair, root: Pair, inverse: f64, s: f64) -> Self {
+        let grown = 0.5 * exponential((root.value() * s.abs()).min(700.0));
+        let shrunk = 0.25 / grown;
+        let square = inverse * inverse;
+        let (cosh, cosh_lo) = ordered_sum(grown, shrunk);
+        let (sinh, sinh_lo) = ordered_sum(grown, -shrunk);
+        let side = 1.0_f64.copysign(s);
+        let g1 = Pair::new(side * sinh, side * sinh_lo).over(root, inverse);
+        let b = beta.scaled(-1.0);
+        let (up, up_lo) = ordered_sum(cosh, -1.0);
+        Self {
+            g0: cosh,
+            g1,
+            g2: Pair::new(up, up_lo + cosh_lo).over(b, square),
+            g3: g1.plus(Pair::of(-s)).over(b, square),
+        }
+    }
+
+    /// Rounded.
+    #[inline(always)]
+    pub(super) fn rounded(&self) -> Universal {
+        Universal { g0: self.g0, g1: self.g1.value(), g2: self.g2.value(), g3: self.g3.value() }
     }
 }
 
