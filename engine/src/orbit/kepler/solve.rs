@@ -25,25 +25,16 @@ struct Step {
     /// Time too much.
     miss: f64,
     radius: f64,
-    /// dr/ds.
+    /// dr/ds and d²r/ds².
     bend: f64,
+    third: f64,
 }
 
-impl Orbit {
+impl Step {
+    /// The series t(s) turned round, to the fourth power of the miss; t⁗ = −βt″.
     #[inline(always)]
-    fn radius(&self, g: &Universal) -> f64 {
-        self.distance.value() + (self.eta.value() * g.g1 + self.zeta * g.g2)
-    }
-
-    /// The step to the root as the series t(s) turned round, to the fourth power of the `miss`.
-    #[inline(always)]
-    fn step(&self, g: &Universal, miss: f64) -> Step {
-        let radius = self.radius(g);
+    fn new(radius: f64, miss: f64, bend: f64, third: f64, beta: f64) -> Self {
         let inverse = 1.0 / radius;
-        // t′ = r, t″ = r′ = ηG₀ + ζG₁, t‴ = ζG₀ − βηG₁, t⁗ = −βt″.
-        let (eta, beta) = (self.eta.value(), self.beta.value());
-        let bend = eta * g.g0 + self.zeta * g.g1;
-        let third = self.zeta * g.g0 - beta * (eta * g.g1);
         let u = -miss * inverse;
         let (half, uu) = (inverse * u, u * u);
         let a = 0.5 * bend * half;
@@ -52,7 +43,22 @@ impl Orbit {
         // δ = u(1 − a + 2a² − b + 5ab − 5a³ − c), c = −βu²a/12.
         let aa = a * a;
         let tail = (a - (aa + aa - b)) - a * (5.0 * (b - aa) + buu * (1.0 / 12.0));
-        Step { d: u - u * tail, square: aa.max(b.abs()).max(buu.abs()), miss, radius, bend }
+        Self { d: u - u * tail, square: aa.max(b.abs()).max(buu.abs()), miss, radius, bend, third }
+    }
+}
+
+impl Orbit {
+    #[inline(always)]
+    fn radius(&self, g: &Universal) -> f64 {
+        self.distance.value() + (self.eta.value() * g.g1 + self.zeta * g.g2)
+    }
+
+    /// The step to the root near the place where the functions are `g` and the time is too much by `miss`.
+    #[inline(always)]
+    fn step(&self, g: &Universal, miss: f64) -> Step {
+        // t′ = r, t″ = r′ = ηG₀ + ζG₁, t‴ = r″ = ζG₀ − βηG₁.
+        let (eta, beta) = (self.eta.value(), self.beta.value());
+        Step::new(self.radius(g), miss, eta * g.g0 + self.zeta * g.g1, self.zeta * g.g0 - beta * (eta * g.g1), beta)
     }
 
     /// The step from `s` in plain arithmetic.
@@ -80,15 +86,20 @@ impl Orbit {
         let (miss, miss_lo) = pair::sum(gee, t);
         let g = exact.rounded();
         let step = self.step(&g, miss + (miss_lo + ((t_lo + gee_lo) + (c_lo - dt.1))));
-        // Gₙ′ = Gₙ₋₁ and G₀′ = −βG₁: the functions at s + d by Taylor's series.
-        let (d, beta, distance, eta) = (step.d, self.beta.value(), self.distance.value(), self.eta.value());
-        let (half, third) = (0.5 * d, d * (1.0 / 3.0));
-        let taylor = |a: f64, b: f64, c: f64| d * (a + half * (b + third * c));
-        let (down0, down1) = (-beta * g.g1, -beta * g.g0);
+        // From s on the orbit is one through r, r′ and μ again, and all goes on with the functions at d.
+        let (beta, distance, eta) = (self.beta.value(), self.distance.value(), self.eta.value());
+        let left = step.miss;
+        let on = Universal::short(beta, step.d);
+        let again = Step::new(step.radius + (step.bend * on.g1 + step.third * on.g2), 
+            left + (step.radius * on.g1 + (step.bend * on.g2 + self.mu.value() * on.g3)),
+            step.bend * on.g0 + step.third * on.g1, 
+            step.third * on.g0 - beta * (step.bend * on.g1), beta);
+        let d = again.d;
+        let on = on.moved(beta, d);
         let slope = distance * g.g0 + eta * g.g1;
-        let gee = Pair::settled(gee, gee_lo + taylor(slope, distance * down0 + eta * g.g0, -beta * slope));
-        let g1 = Pair::settled(exact.g1.hi, exact.g1.lo + taylor(g.g0, down0, down1));
-        let g2 = Pair::settled(exact.g2.hi, exact.g2.lo + taylor(g.g1, g.g0, down0));
+        let gee = Pair::settled(gee, gee_lo + (slope * on.g1 + (eta * g.g0 - beta * (distance * g.g1)) * on.g2));
+        let g1 = Pair::settled(exact.g1.hi, exact.g1.lo + (g.g0 * on.g1 - beta * (g.g1 * on.g2)));
+        let g2 = Pair::settled(exact.g2.hi, exact.g2.lo + (g.g1 * on.g1 + g.g0 * on.g2));
         let f_less_one = self.pull.times(g2).scaled(-1.0);
         let moved = |k: usize| {
             let (way, way_lo) = pair::combined(self.r0.0[k], f_less_one, self.v0.0[k], gee);
@@ -112,17 +123,14 @@ impl Orbit {
         let (near, bend) = guess::nearby(self, dt.0);
         let mut s = if bend < 0.2 { near } else { pericentre().around(self, dt.0) };
         for _ in 0..4 {
-            let step = self.rough(s, dt.0);
+            let (step, r, v) = self.finish(s, dt);
+            if step.square < CLOSE {
+                return (r, v);
+            }
             if !(step.square < LARGE) {
                 break;
             }
             s += step.d;
-            if step.square < CLOSE {
-                let (step, r, v) = self.finish(s, dt);
-                if step.square < SMALL {
-                    return (r, v);
-                }
-            }
         }
         self.slowly(s, dt)
     }

@@ -94,6 +94,27 @@ impl Universal {
         }
     }
 
+    /// By short series, for |βs²| ≤ 0.01.
+    #[inline(always)]
+    pub(super) fn short(beta: f64, s: f64) -> Self {
+        let (ss, x) = (s * s, beta * (s * s));
+        let c2 = 0.5 - x * (1.0 / 24.0 - x * (1.0 / 720.0 - x * (1.0 / 40_320.0)));
+        let c3 = 1.0 / 6.0 - x * (1.0 / 120.0 - x * (1.0 / 5040.0 - x * (1.0 / 362_880.0)));
+        Self { g0: 1.0 - x * c2, g1: s - s * (x * c3), g2: ss * c2, g3: ss * (s * c3) }
+    }
+
+    /// The functions a tiny `d` further on.
+    #[inline(always)]
+    pub(super) fn moved(&self, beta: f64, d: f64) -> Self {
+        let half = 0.5 * d;
+        Self {
+            g0: self.g0 - beta * (d * (self.g1 + half * self.g0)),
+            g1: self.g1 + d * (self.g0 - half * (beta * self.g1)),
+            g2: self.g2 + d * (self.g1 + half * self.g0),
+            g3: self.g3 + d * (self.g2 + half * self.g1),
+        }
+    }
+
     /// By sines of the half angle: an ellipse, more than half a turn away.
     fn turning(beta: f64, s: f64) -> Self {
         let root = beta.sqrt();
