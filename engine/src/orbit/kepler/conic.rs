@@ -29,6 +29,8 @@ pub(super) struct Scaled {
     /// Powers of two that lengths and speeds were divided by.
     length: i32,
     speed: i32,
+    /// Whether one factor does for each.
+    tame: bool,
     pub(super) orbit: Orbit,
 }
 
@@ -44,11 +46,7 @@ fn power_of_two(k: i32) -> f64 {
 }
 
 /// x 2ᵏ for any k that two states can need.
-#[inline(always)]
 fn times_power<T: core::ops::Mul<f64, Output = T>>(x: T, k: i32) -> T {
-    if k.abs() <= 1000 {
-        return x * power_of_two(k);
-    }
     let a = k.clamp(-1000, 1000);
     let b = (k - a).clamp(-1000, 1000);
     x * power_of_two(a) * power_of_two(b) * power_of_two((k - a - b).clamp(-1000, 1000))
@@ -59,24 +57,42 @@ impl Scaled {
     pub(super) fn new(gm: f64, r0: DVec3, v0: DVec3) -> Self {
         let largest = r0.abs().max_element();
         let fastest = v0.abs().max_element();
-        let bends = gm > 0.0 && largest > 0.0 && r0.is_finite() && v0.is_finite() && gm.is_finite();
         let length = exponent(largest);
         let speed = exponent(fastest).max((exponent(gm) - length) >> 1);
-        let orbit = Orbit::new(times_power(gm, -length - 2 * speed), times_power(r0, -length), times_power(v0, -speed));
-        Self { gm, start: (r0, v0), bends, length, speed, orbit }
+        // Where one factor does. NaN and infinity have the largest exponent.
+        let tame = length.abs() < 300 && speed.abs() < 300 && largest < f64::INFINITY;
+        let orbit = if tame {
+            let k = power_of_two(-length - 2 * speed);
+            Orbit::new(gm * k, r0 * power_of_two(-length), v0 * power_of_two(-speed))
+        } else {
+            Orbit::new(times_power(gm, -length - 2 * speed), times_power(r0, -length), times_power(v0, -speed))
+        };
+        let bends = gm > 0.0 && largest > 0.0 && (tame || r0.is_finite()) && v0.is_finite() && gm.is_finite();
+        Self { gm, start: (r0, v0), bends, tame, length, speed, orbit }
     }
 
     /// The state after `dt_s`; the scaled period and the pericentre are asked for where they are needed.
     #[inline(always)]
     pub(super) fn after(&self, dt_s: f64, turn: impl FnOnce() -> Pair, pericentre: impl FnOnce() -> Pericentre) -> (DVec3, DVec3) {
-        let (r0, v0) = self.start;
         if !(self.bends && dt_s.is_finite()) || dt_s == 0.0 {
-            return if dt_s == 0.0 { (r0, v0) } else { (r0 + v0 * dt_s, v0) };
+            return self.straight(dt_s);
         }
-        let dt = times_power(dt_s, self.speed - self.length).clamp(-1e300, 1e300);
+        let k = self.speed - self.length;
+        let dt = if self.tame { dt_s * power_of_two(k) } else { times_power(dt_s, k) };
+        let dt = dt.clamp(-1e300, 1e300);
         let dt = self.orbit.reduced(dt, turn);
         let (r, v) = self.orbit.after(dt, pericentre);
-        (times_power(r, self.length), times_power(v, self.speed))
+        if self.tame {
+            (r * power_of_two(self.length), v * power_of_two(self.speed))
+        } else {
+            (times_power(r, self.length), times_power(v, self.speed))
+        }
+    }
+
+    #[cold]
+    fn straight(&self, dt_s: f64) -> (DVec3, DVec3) {
+        let (r0, v0) = self.start;
+        if dt_s == 0.0 { (r0, v0) } else { (r0 + v0 * dt_s, v0) }
     }
 }
 

@@ -31,6 +31,9 @@ pub(super) struct Orbit {
 /// 2π to 79 bits.
 const TWO_PI: Pair = Pair { hi: 6.283_185_362_815_857, lo: -5.563_627_045_666_847e-8 };
 
+/// 3·2⁵¹: adding it rounds to a whole number.
+const WHOLE: f64 = 6_755_399_441_055_744.0;
+
 impl Orbit {
     #[inline(always)]
     pub(super) fn new(mu: f64, r0: DVec3, v0: DVec3) -> Self {
@@ -62,21 +65,20 @@ impl Orbit {
         if dt.abs() <= 0.5 * self.period || !self.period.is_finite() {
             return (dt, 0.0);
         }
-        let turns = libm::rint(dt / self.period);
-        if turns.abs() > 4.0e15 {
+        let turns = dt / self.period;
+        if turns.abs() > 2.0e15 {
             // No digit of the phase is left.
             return (libm::remainder(dt, self.period), 0.0);
         }
+        let turns = (turns + WHOLE) - WHOLE;
         let (p, e) = Pair::of(turns).product(turn());
         let (s, f) = pair::sum(dt, -p);
         pair::sum(s, f - e)
     }
 
     /// The orbit as seen from its pericentre.
+    #[inline(always)]
     pub(super) fn pericentre(&self) -> Pericentre {
-        let [x, y, z] = self.r0.0.map(Pair::value);
-        let [u, v, w] = self.v0.0.map(Pair::value);
-        let moment = DVec3::new(x, y, z).cross(DVec3::new(u, v, w)).length_squared();
-        Pericentre::new(self, moment)
+        Pericentre::new(self, self.r0.value().cross(self.v0.value()).length_squared())
     }
 }

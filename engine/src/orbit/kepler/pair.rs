@@ -119,9 +119,16 @@ impl Vector {
         Self([Pair::of(a.x), Pair::of(a.y), Pair::of(a.z)])
     }
 
+    /// Rounded: the vector that the pairs were made of.
+    #[inline(always)]
+    pub(super) fn value(&self) -> DVec3 {
+        DVec3::new(self.0[0].value(), self.0[1].value(), self.0[2].value())
+    }
+
     #[inline(always)]
     pub(super) fn dot(&self, b: &Self) -> Pair {
-        let [x, y, z] = [0, 1, 2].map(|k| self.0[k].product(b.0[k]));
+        // Written out: `map` would not be inlined.
+        let (x, y, z) = (self.0[0].product(b.0[0]), self.0[1].product(b.0[1]), self.0[2].product(b.0[2]));
         let (s, e) = sum(x.0, y.0);
         let (t, f) = sum(s, z.0);
         Pair::settled(t, (e + f) + ((x.1 + y.1) + z.1))
