@@ -8,10 +8,12 @@
 //!
 //! - [Wisdom & Hernandez 2015] "Fast and accurate solution of Kepler's problem for planetary motion", MNRAS 453, 3015.
 
+pub mod batch;
 mod conic;
 mod guess;
 mod orbit;
 mod pair;
+mod real;
 mod solve;
 mod universal;
 

@@ -24,15 +24,32 @@ pub struct Conic {
 pub(super) struct Scaled {
     gm: f64,
     start: (DVec3, DVec3),
-    /// Whether there is a centre to bend towards.
-    pub(super) bends: bool,
-    /// Powers of two that lengths and speeds were divided by.
-    length: i32,
-    speed: i32,
-    /// Whether one factor does for each.
-    tame: bool,
+    scale: Scale,
     pub(super) orbit: Orbit,
 }
+
+/// Powers of two that lengths and speeds are divided by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Scale {
+    length: i32,
+    speed: i32,
+    /// Whether there is a centre to bend towards.
+    pub(super) bends: bool,
+    /// Whether one factor does for each quantity.
+    pub(super) tame: bool,
+}
+
+/// The factors of a tame [`Scale`], from the caller's units.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Factors {
+    pub(super) gm: f64,
+    pub(super) length: f64,
+    pub(super) speed: f64,
+    pub(super) time: f64,
+}
+
+/// Revolutions beyond which no digit of the phase is left.
+pub(super) const MOST_TURNS: f64 = 2e15;
 
 /// The power of two at or below |x|, −1023 for what is smaller than a normal number.
 #[expect(clippy::cast_possible_truncation, reason = "eleven bits")]
@@ -52,41 +69,63 @@ fn times_power<T: core::ops::Mul<f64, Output = T>>(x: T, k: i32) -> T {
     x * power_of_two(a) * power_of_two(b) * power_of_two((k - a - b).clamp(-1000, 1000))
 }
 
-impl Scaled {
+impl Scale {
     #[inline(always)]
-    pub(super) fn new(gm: f64, r0: DVec3, v0: DVec3) -> Self {
-        let largest = r0.abs().max_element();
-        let fastest = v0.abs().max_element();
+    pub(super) fn of(gm: f64, r0: DVec3, v0: DVec3) -> Self {
+        let (largest, fastest) = (r0.abs().max_element(), v0.abs().max_element());
         let length = exponent(largest);
         let speed = exponent(fastest).max((exponent(gm) - length) >> 1);
-        // Where one factor does. NaN and infinity have the largest exponent.
-        let tame = length.abs() < 300 && speed.abs() < 300 && largest < f64::INFINITY;
-        let orbit = if tame {
-            let k = power_of_two(-length - 2 * speed);
-            Orbit::new(gm * k, r0 * power_of_two(-length), v0 * power_of_two(-speed))
-        } else {
-            Orbit::new(times_power(gm, -length - 2 * speed), times_power(r0, -length), times_power(v0, -speed))
-        };
-        let bends = gm > 0.0 && largest > 0.0 && (tame || r0.is_finite()) && v0.is_finite() && gm.is_finite();
-        Self { gm, start: (r0, v0), bends, tame, length, speed, orbit }
+        let tame = (length.abs() < 300) & (speed.abs() < 300);
+        let bends = (gm > 0.0) & (gm < f64::INFINITY) & (largest > 0.0) & r0.is_finite() & v0.is_finite();
+        Self { length, speed, bends, tame }
     }
 
-    /// The state after `dt_s`; the scaled period and the pericentre are asked for where they are needed.
+    /// Without meaning where it is not tame.
     #[inline(always)]
-    pub(super) fn after(&self, dt_s: f64, turn: impl FnOnce() -> Pair, pericentre: impl FnOnce() -> Pericentre) -> (DVec3, DVec3) {
-        if !(self.bends && dt_s.is_finite()) || dt_s == 0.0 {
-            return self.straight(dt_s);
-        }
-        let k = self.speed - self.length;
-        let dt = if self.tame { dt_s * power_of_two(k) } else { times_power(dt_s, k) };
-        let dt = dt.clamp(-1e300, 1e300);
-        let dt = self.orbit.reduced(dt, turn);
-        let (r, v) = self.orbit.after(dt, pericentre);
+    pub(super) fn factors(self) -> Factors {
+        let (length, speed) = (power_of_two(-self.length), power_of_two(-self.speed));
+        Factors { gm: length * speed * speed, length, speed, time: power_of_two(self.speed - self.length) }
+    }
+
+    /// Back to the caller's units.
+    #[inline(always)]
+    pub(super) fn undo(self, r: DVec3, v: DVec3) -> (DVec3, DVec3) {
         if self.tame {
             (r * power_of_two(self.length), v * power_of_two(self.speed))
         } else {
             (times_power(r, self.length), times_power(v, self.speed))
         }
+    }
+}
+
+impl Scaled {
+    #[inline(always)]
+    pub(super) fn new(gm: f64, r0: DVec3, v0: DVec3) -> Self {
+        let scale = Scale::of(gm, r0, v0);
+        let Scale { length, speed, .. } = scale;
+        let orbit = if scale.tame {
+            let k = scale.factors();
+            Orbit::new(gm * k.gm, (r0 * k.length).to_array(), (v0 * k.speed).to_array())
+        } else {
+            let (r, v) = (times_power(r0, -length), times_power(v0, -speed));
+            Orbit::new(times_power(gm, -length - 2 * speed), r.to_array(), v.to_array())
+        };
+        Self { gm, start: (r0, v0), scale, orbit }
+    }
+
+    /// The state after `dt_s`; the scaled period and the pericentre are asked for where they are needed.
+    #[inline(always)]
+    pub(super) fn after(&self, dt_s: f64, turn: impl FnOnce() -> Pair, pericentre: impl FnOnce() -> Pericentre) -> (DVec3, DVec3) {
+        if !(self.scale.bends && dt_s.is_finite()) || dt_s == 0.0 {
+            return self.straight(dt_s);
+        }
+        let k = self.scale.speed - self.scale.length;
+        let dt = if self.scale.tame { dt_s * power_of_two(k) } else { times_power(dt_s, k).clamp(-1e300, 1e300) };
+        let period = self.orbit.period;
+        let dt = if dt.abs() > MOST_TURNS * period { libm::remainder(dt, period) } else { dt };
+        let dt = self.orbit.reduced(dt, turn);
+        let (r, v) = self.orbit.after(dt, pericentre);
+        self.scale.undo(DVec3::from_array(r), DVec3::from_array(v))
     }
 
     #[cold]
@@ -106,7 +145,7 @@ impl Conic {
     /// Period, s; infinite on open orbits.
     pub fn period_s(&self) -> f64 {
         let period = self.scaled.orbit.period;
-        if period.is_finite() { times_power(self.turn.value(), self.scaled.length - self.scaled.speed) } else { f64::INFINITY }
+        if period.is_finite() { times_power(self.turn.value(), self.scaled.scale.length - self.scaled.scale.speed) } else { f64::INFINITY }
     }
 
     /// Gravitational parameter, m³/s².

@@ -1,10 +1,13 @@
-//! The root of Kepler's equation in the universal anomaly.
+//! The root of Kepler's equation in the universal anomaly, and the state there.
+//!
+//! - [Battin 1999] "An Introduction to the Mathematics and Methods of Astrodynamics", §4.5 (the functions at a sum).
+//! - [Danby 1987] "The solution of Kepler's equation, III", Celest. Mech. 40, 303 (steps of high order).
 
 use super::guess::{self, Pericentre};
 use super::orbit::Orbit;
 use super::pair::{self, Pair};
-use super::universal::{Exact, FARTHEST, Universal};
-use glam::DVec3;
+use super::real::Real;
+use super::universal::{Exact, Universal};
 
 /// A step whose every term is below this is taken inside the functions themselves: what is left is of its cube.
 const SMALL: f64 = 1e-9;
@@ -17,68 +20,65 @@ const MOST_STEPS: u32 = 200;
 
 /// One step of the solver.
 #[derive(Clone, Copy, Debug)]
-struct Step {
+pub(super) struct Step<T = f64> {
     /// The change of s.
-    d: f64,
+    d: T,
     /// The square of the step as a part of the length over which the orbit changes: says how fast the series converges.
-    square: f64,
+    square: T,
     /// Time too much.
-    miss: f64,
-    radius: f64,
+    miss: T,
+    radius: T,
     /// dr/ds and d²r/ds².
-    bend: f64,
-    third: f64,
+    bend: T,
+    third: T,
 }
 
-impl Step {
+impl<T: Real> Step<T> {
     /// The series t(s) turned round, to the fourth power of the miss; t⁗ = −βt″.
     #[inline(always)]
-    fn new(radius: f64, miss: f64, bend: f64, third: f64, beta: f64) -> Self {
-        let inverse = 1.0 / radius;
+    fn new(radius: T, miss: T, bend: T, third: T, beta: T) -> Self {
+        let inverse = miss.all(1.0) / radius;
         let u = -miss * inverse;
         let (half, uu) = (inverse * u, u * u);
-        let a = 0.5 * bend * half;
+        let a = bend * half * 0.5;
         let b = third * inverse * uu * (1.0 / 6.0);
         let buu = beta * uu;
         // δ = u(1 − a + 2a² − b + 5ab − 5a³ − c), c = −βu²a/12.
         let aa = a * a;
-        let tail = (a - (aa + aa - b)) - a * (5.0 * (b - aa) + buu * (1.0 / 12.0));
+        let tail = (a - (aa + aa - b)) - a * ((b - aa) * 5.0 + buu * (1.0 / 12.0));
         Self { d: u - u * tail, square: aa.max(b.abs()).max(buu.abs()), miss, radius, bend, third }
+    }
+
+    /// Whether a single step was enough.
+    #[inline(always)]
+    pub(super) fn is_close(&self) -> T::Mask {
+        self.square.below(self.square.all(CLOSE))
     }
 }
 
-impl Orbit {
-    #[inline(always)]
-    fn radius(&self, g: &Universal) -> f64 {
-        self.distance.value() + (self.eta.value() * g.g1 + self.zeta * g.g2)
-    }
-
+impl<T: Real> Orbit<T> {
     /// The step to the root near the place where the functions are `g` and the time is too much by `miss`.
     #[inline(always)]
-    fn step(&self, g: &Universal, miss: f64) -> Step {
+    fn step(&self, g: &Universal<T>, miss: T) -> Step<T> {
         // t′ = r, t″ = r′ = ηG₀ + ζG₁, t‴ = r″ = ζG₀ − βηG₁.
-        let (eta, beta) = (self.eta.value(), self.beta.value());
-        Step::new(self.radius(g), miss, eta * g.g0 + self.zeta * g.g1, self.zeta * g.g0 - beta * (eta * g.g1), beta)
+        let (eta, beta, zeta) = (self.eta.value(), self.beta.value(), self.zeta);
+        let radius = self.distance.value() + (eta * g.g1 + zeta * g.g2);
+        Step::new(radius, miss, eta * g.g0 + zeta * g.g1, zeta * g.g0 - beta * (eta * g.g1), beta)
     }
 
-    /// The step from `s` in plain arithmetic.
+    /// A first guess at s after a time `dt` of at most half a revolution.
     #[inline(always)]
-    fn rough(&self, s: f64, dt: f64) -> Step {
-        let g = Universal::at(self.beta.value(), s);
-        let miss = (self.distance.value() * g.g1 + self.eta.value() * g.g2) + (self.mu.value() * g.g3 - dt);
-        self.step(&g, miss)
+    pub(super) fn guess(&self, dt: T, pericentre: impl FnOnce() -> Pericentre<T>) -> T {
+        let (near, bend) = guess::nearby(self, dt);
+        let little = bend.below(bend.all(0.2));
+        if dt.every(little) { near } else { T::pick(little, near, pericentre().around(self, dt)) }
     }
 
-    /// The state at the root near `s`, if it is near enough for one step inside the functions.
+    /// Position and velocity at the root near `s`, for a time `dt` in two words; right where the step [`Step::is_close`].
     #[inline(always)]
-    fn finish(&self, s: f64, dt: (f64, f64)) -> (Step, DVec3, DVec3) {
+    pub(super) fn finish(&self, s: T, dt: (T, T)) -> (Step<T>, [T; 3], [T; 3]) {
         let s = pair::shortened(s);
-        let exact = if self.beta.value() * (s * s) >= FARTHEST {
-            Exact::near(self.beta, s)
-        } else {
-            let (root, inverse) = self.beta.scaled(-1.0).root();
-            Exact::far(self.beta, root, inverse, s)
-        };
+        let exact = Exact::at(self.beta, s);
         // r₀G₁ + η₀G₂ + μG₃ − Δt, the sum of the first two also being g, the share of the velocity in the new position.
         let (gee, gee_lo) = pair::combined(self.distance, exact.g1, self.eta, exact.g2);
         let (c, c_lo) = self.mu.product(exact.g3);
@@ -86,60 +86,78 @@ impl Orbit {
         let (miss, miss_lo) = pair::sum(gee, t);
         let g = exact.rounded();
         let step = self.step(&g, miss + (miss_lo + ((t_lo + gee_lo) + (c_lo - dt.1))));
-        // From s on the orbit is one through r, r′ and μ again, and all goes on with the functions at d.
-        let (beta, distance, eta) = (self.beta.value(), self.distance.value(), self.eta.value());
-        let left = step.miss;
+        // From s on the orbit is one through r, r′ and μ again, and all goes on with the functions at d [Battin 1999, §4.5].
+        let (beta, distance, eta, mu) = (self.beta.value(), self.distance.value(), self.eta.value(), self.mu.value());
         let on = Universal::short(beta, step.d);
-        let again = Step::new(step.radius + (step.bend * on.g1 + step.third * on.g2), 
-            left + (step.radius * on.g1 + (step.bend * on.g2 + self.mu.value() * on.g3)),
-            step.bend * on.g0 + step.third * on.g1, 
-            step.third * on.g0 - beta * (step.bend * on.g1), beta);
-        let d = again.d;
-        let on = on.moved(beta, d);
+        let again = Step::new(
+            step.radius + (step.bend * on.g1 + step.third * on.g2),
+            step.miss + (step.radius * on.g1 + (step.bend * on.g2 + mu * on.g3)),
+            step.bend * on.g0 + step.third * on.g1,
+            step.third * on.g0 - beta * (step.bend * on.g1),
+            beta,
+        );
+        let on = on.moved(beta, again.d);
         let slope = distance * g.g0 + eta * g.g1;
         let gee = Pair::settled(gee, gee_lo + (slope * on.g1 + (eta * g.g0 - beta * (distance * g.g1)) * on.g2));
         let g1 = Pair::settled(exact.g1.hi, exact.g1.lo + (g.g0 * on.g1 - beta * (g.g1 * on.g2)));
         let g2 = Pair::settled(exact.g2.hi, exact.g2.lo + (g.g1 * on.g1 + g.g0 * on.g2));
         let f_less_one = self.pull.times(g2).scaled(-1.0);
-        let moved = |k: usize| {
-            let (way, way_lo) = pair::combined(self.r0.0[k], f_less_one, self.v0.0[k], gee);
-            let (end, end_lo) = pair::sum(way, self.r0.0[k].value());
-            end + (end_lo + way_lo)
-        };
-        let r = DVec3::new(moved(0), moved(1), moved(2));
+        let r = [self.moved(0, f_less_one, gee), self.moved(1, f_less_one, gee), self.moved(2, f_less_one, gee)];
         // Regularised: at the very centre r = 0, where only the velocity has no value.
-        let inverse = 1.0 / r.length().max(1e-30);
+        let length = (r[0] * r[0] + r[1] * r[1] + r[2] * r[2]).sqrt();
+        let inverse = length.all(1.0) / length.max(length.all(1e-30));
         let (a, b) = (self.pull.times(g1), self.mu.times(g2));
-        let turned = |k: usize| {
-            let (way, way_lo) = pair::combined(self.r0.0[k], a, self.v0.0[k], b);
-            self.v0.0[k].value() - (way + way_lo) * inverse
-        };
-        (step, r, DVec3::new(turned(0), turned(1), turned(2)))
+        (step, r, [self.turned(0, a, b, inverse), self.turned(1, a, b, inverse), self.turned(2, a, b, inverse)])
     }
 
+    /// A component of r₀ + (f − 1) r₀ + g v₀.
+    #[inline(always)]
+    fn moved(&self, k: usize, f_less_one: Pair<T>, gee: Pair<T>) -> T {
+        let (way, way_lo) = pair::combined(self.r0.0[k], f_less_one, self.v0.0[k], gee);
+        let (end, end_lo) = pair::sum(way, self.r0.0[k].value());
+        end + (end_lo + way_lo)
+    }
+
+    /// A component of v₀ − (a r₀ + b v₀)/r.
+    #[inline(always)]
+    fn turned(&self, k: usize, a: Pair<T>, b: Pair<T>, inverse: T) -> T {
+        let (way, way_lo) = pair::combined(self.r0.0[k], a, self.v0.0[k], b);
+        self.v0.0[k].value() - (way + way_lo) * inverse
+    }
+}
+
+impl Orbit {
     /// Position and velocity after a time `dt` (in two words) of at most half a revolution.
     #[inline(always)]
-    pub(super) fn after(&self, dt: (f64, f64), pericentre: impl FnOnce() -> Pericentre) -> (DVec3, DVec3) {
-        let (near, bend) = guess::nearby(self, dt.0);
-        let mut s = if bend < 0.2 { near } else { pericentre().around(self, dt.0) };
+    pub(super) fn after(&self, dt: (f64, f64), pericentre: impl FnOnce() -> Pericentre) -> ([f64; 3], [f64; 3]) {
+        let s = self.guess(dt.0, pericentre);
+        let (step, r, v) = self.finish(s, dt);
+        if step.is_close() { (r, v) } else { self.slowly(s, step, dt) }
+    }
+
+    /// Where one step is not enough.
+    #[cold]
+    fn slowly(&self, mut s: f64, mut step: Step, dt: (f64, f64)) -> ([f64; 3], [f64; 3]) {
         for _ in 0..4 {
-            let (step, r, v) = self.finish(s, dt);
-            if step.square < CLOSE {
-                return (r, v);
-            }
             if !(step.square < LARGE) {
                 break;
             }
             s += step.d;
+            let (next, r, v) = self.finish(s, dt);
+            if next.is_close() {
+                return (r, v);
+            }
+            step = next;
         }
-        self.slowly(s, dt)
+        let (_, r, v) = self.finish(self.search(s, dt.0), dt);
+        (r, v)
     }
 
-    #[cold]
-    fn slowly(&self, s: f64, dt: (f64, f64)) -> (DVec3, DVec3) {
-        let s = self.search(s, dt.0);
-        let (_, r, v) = self.finish(s, dt);
-        (r, v)
+    /// The step from `s` in plain arithmetic.
+    fn rough(&self, s: f64, dt: f64) -> Step {
+        let g = Universal::at(self.beta.value(), s);
+        let miss = (self.distance.value() * g.g1 + self.eta.value() * g.g2) + (self.mu.value() * g.g3 - dt);
+        self.step(&g, miss)
     }
 
     /// The root where the quick way failed: Halley's steps inside a bracket that only ever shrinks.
