@@ -4,11 +4,13 @@
 //! for any time inside the last step (dense output): whoever looks at a path samples it and never changes it.
 //! - [`runge_kutta`]: fixed tables, for powered flight at the tick.
 //! - [`series`]: arithmetic of power series, the parts of every Taylor method.
+//! - [`taylor`]: adaptive, of high order, for point masses.
 //!
 //! Not here: what attracts whom ([`super::gravity`]), closed forms ([`super::kepler`]).
 
 pub mod runge_kutta;
 pub mod series;
+pub mod taylor;
 
 use glam::DVec3;
 
