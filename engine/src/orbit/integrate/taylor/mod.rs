@@ -4,13 +4,14 @@
 //! vanish, and keeps the polynomial as dense output. The state is kept in two words, and what of a step is large is summed in two
 //! words, so that rounding grows no faster than that of the accelerations' later orders.
 //! - [`lanes`]: four numbers at a time, one word or two.
-//! - [`pairs`]: the coefficients of n bodies. [`step`]: length and sum of a step.
+//! - [`centre`]: the coefficients of massless bodies about one massive one. [`pairs`]: of n bodies. [`step`]: length and sum of a step.
 //!
 //! Not here: forces beyond point masses, and crowds of massless bodies (each pair of bodies costs, a pair of massless ones too).
 //! - [Jorba & Zou 2005] "A software package for the numerical integration of ODEs by means of high-order Taylor methods",
 //!   Experimental Mathematics 14.
 //! - [Biscani & Izzo 2021] "Revisiting high-order Taylor methods for astrodynamics and celestial mechanics", MNRAS 504.
 
+mod centre;
 mod lanes;
 mod pairs;
 mod step;
@@ -18,8 +19,11 @@ mod step;
 mod tests;
 
 use super::{Points, Work};
+use centre::Centre;
 use glam::DVec3;
+use lanes::{Four, Lanes, OnFour, Two};
 use pairs::Pairs;
+use step::Bound;
 use thiserror::Error;
 
 /// Why a step could not be taken. The points are as they were before it.
@@ -44,46 +48,53 @@ pub enum Stop {
     },
 }
 
+/// Where the coefficients come from.
+#[derive(Clone, Debug)]
+enum Kernel {
+    Centre(Centre),
+    Pairs(Box<Pairs>),
+}
+
 /// The method, its buffers, and the polynomial of its last step.
 #[derive(Clone, Debug)]
 pub struct Taylor {
     /// What the state's f64 words leave out: of the time, the positions, the velocities. Saved with the points, and put back before
     /// going on, it makes a restart the same bits; zero ([`Taylor::reset`]) for points from elsewhere.
     pub low: Points,
-    pairs: Pairs,
+    kernel: Kernel,
     order: usize,
-    log_tolerance: f64,
-    /// Start (two words), unit and length of the last step.
+    bound: Bound,
+    /// Start (two words) and length of the last step.
     start: (f64, f64),
-    unit: f64,
     span: f64,
+    /// The state at the step's end, before it is known to be finite.
+    next: Vec<[DVec3; 4]>,
 }
 
 impl Taylor {
     /// For bodies with gravitational parameters `gm` (0: massless), with each step's last terms below `tolerance` of the separation of
     /// each pair of bodies, at the order that costs least there: that for which a step is 1/e² of the radius of convergence
-    /// [Jorba & Zou 2005, §3.2].
+    /// [Jorba & Zou 2005, §3.2]. A tolerance of 1e-18 leaves the rounding as the larger error.
     #[must_use]
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // clamped
     pub fn new(gm: &[f64], tolerance: f64) -> Self {
-        let tolerance = tolerance.clamp(1e-30, 1e-3);
-        let order = (libm::log(tolerance) * -0.5).clamp(7.0, 33.0) as usize / 2 * 2 + 1;
-        Self::with_order(gm, tolerance, order)
+        let order = libm::log(tolerance.clamp(1e-30, 1e-3)) * -0.5;
+        Self::with_order(gm, tolerance, order.clamp(7.0, 31.0) as usize)
     }
 
-    /// The same with a given order (made odd, 7 … 41).
+    /// The same with a given order (made odd, 7 … 31).
     #[must_use]
     pub fn with_order(gm: &[f64], tolerance: f64, order: usize) -> Self {
-        let (order, n) = (order.clamp(7, 41) | 1, gm.len());
-        let zero = vec![DVec3::ZERO; n];
+        let (order, zero) = (order.clamp(7, 31) | 1, vec![DVec3::ZERO; gm.len()]);
+        let alone = gm.iter().filter(|m| **m > 0.0).count() == 1;
         Self {
             low: Points { t: 0.0, q: zero.clone(), v: zero },
-            pairs: Pairs::new(gm, order),
+            kernel: if alone { Kernel::Centre(Centre::new(gm, order)) } else { Kernel::Pairs(Box::new(Pairs::new(gm, order))) },
             order,
-            log_tolerance: libm::log2(tolerance),
+            bound: Bound::new(order, tolerance.clamp(1e-30, 1e-3)),
             start: (0.0, 0.0),
-            unit: 1.0,
             span: 0.0,
+            next: vec![[DVec3::ZERO; 4]; gm.len()],
         }
     }
 
@@ -102,85 +113,137 @@ impl Taylor {
 
     /// Take one natural step towards `t_end`, never past it. True when it is reached.
     pub fn step(&mut self, points: &mut Points, t_end: f64) -> Result<bool, Stop> {
-        pulp::Arch::new().dispatch(One { method: self, points, t_end })
+        lanes::dispatch(One { method: self, points, t_end })
     }
 
     /// Go to `t_end`.
     pub fn run(&mut self, points: &mut Points, t_end: f64) -> Result<Work, Stop> {
-        let (arch, mut work) = (pulp::Arch::new(), Work::default());
-        while points.t != t_end {
-            arch.dispatch(One { method: self, points, t_end })?;
+        let mut work = Work::default();
+        while points.t != t_end || self.low.t != 0.0 {
+            lanes::dispatch(One { method: self, points, t_end })?;
             work.steps += 1;
             work.evaluations += 1;
         }
         Ok(work)
     }
 
+    /// Where all bodies were, and how they moved, at `t` within the last step, into `q` and `v`: the polynomial itself. Outside of the
+    /// step it still has a value, which soon is wrong.
+    pub fn dense_into(&self, t: f64, q: &mut [DVec3], v: &mut [DVec3]) {
+        lanes::dispatch(At { method: self, t, to: Seen { first: 0, q, v } });
+    }
+
+    /// The same for one body.
+    #[must_use]
+    pub fn dense(&self, body: usize, t: f64) -> (DVec3, DVec3) {
+        let (mut q, mut v) = ([DVec3::ZERO], [DVec3::ZERO]);
+        lanes::dispatch(At { method: self, t, to: Seen { first: body, q: &mut q, v: &mut v } });
+        (q[0], v[0])
+    }
+
+    /// The last step: its start and its end.
+    #[must_use]
+    pub fn last_step(&self) -> (f64, f64) {
+        (self.start.0, self.start.0 + (self.start.1 + self.span))
+    }
+
     #[inline(always)]
-    fn step_inner(&mut self, points: &mut Points, t_end: f64) -> Result<bool, Stop> {
+    fn advance<S: Four>(&self, s: S, h: f64, to: &mut impl Sink) {
+        match &self.kernel {
+            Kernel::Centre(k) => k.advance(s, h, to),
+            Kernel::Pairs(k) => k.advance(s, h, to),
+        }
+    }
+
+    #[inline(always)]
+    fn step_on<S: Four>(&mut self, s: S, points: &mut Points, t_end: f64) -> Result<bool, Stop> {
         let n = self.low.q.len();
         if points.q.len() != n || points.v.len() != n {
-            return Err(Stop::Count { given: points.q.len(), wanted: n });
+            return Err(Stop::Count { given: points.q.len().min(points.v.len()), wanted: n });
         }
         let remaining = (t_end - points.t) - self.low.t;
         if remaining == 0.0 {
+            (points.t, self.low.t) = (t_end, 0.0);
             return Ok(true);
         }
-        self.read(points);
-        let reach = self.pairs.build().map_err(|t| Stop::Together(t.0, t.1))?;
-        let mut h = step::length(reach.ratio, self.order, self.log_tolerance) * reach.unit;
-        let last = !(h < remaining.abs());
-        h = if last { remaining } else { h.copysign(remaining) };
-        if !(h.abs() > points.t.abs() * 1e-30 && h.is_finite()) {
-            return Err(if h.is_finite() { Stop::Stuck } else { Stop::NotFinite });
+        let natural = match &mut self.kernel {
+            Kernel::Centre(k) => k.build(s, points, &self.low, &self.bound)?,
+            Kernel::Pairs(k) => k.build(s, points, &self.low, &self.bound)?,
+        };
+        if natural.is_nan() || !remaining.is_finite() {
+            return Err(Stop::NotFinite);
         }
-        (self.start, self.unit, self.span) = ((points.t, self.low.t), reach.unit, h);
-        self.write(points)?;
+        let last = natural >= remaining.abs();
+        if !last && natural <= points.t.abs() * 1e-28 + f64::MIN_POSITIVE {
+            return Err(Stop::Stuck);
+        }
+        let h = if last { remaining } else { natural.copysign(remaining) };
+        self.write(s, h, points)?;
+        (self.start, self.span) = ((points.t, self.low.t), h);
         if last {
             (points.t, self.low.t) = (t_end, 0.0);
         } else {
-            let (t, e) = lanes::two_sum([points.t; 4], [h; 4]);
-            let (t, e) = lanes::quick_two_sum(t, lanes::add(e, [self.low.t; 4]));
-            (points.t, self.low.t) = (t[0], e[0]);
+            let t = Lanes::splat(s, points.t).plus(Lanes::splat(s, h));
+            let t = t.high.plus_smaller(t.low + Lanes::splat(s, self.low.t));
+            (points.t, self.low.t) = (t.high.array()[0], t.low.array()[0]);
         }
         Ok(last)
     }
 
-    /// The state into the series' orders 0 and 1.
+    /// The state after `h`; nothing is changed unless all of it is finite.
     #[inline(always)]
-    fn read(&mut self, points: &Points) {
-        for i in 0..points.q.len() {
-            let from = [&points.q[i], &points.v[i], &self.low.q[i], &self.low.v[i]].map(DVec3::to_array);
-            for c in 0..3 {
-                let at = self.pairs.index(c, i);
-                self.pairs.x[0][at] = from[0][c];
-                self.pairs.x[1][at] = from[1][c];
-                self.pairs.low[0][at] = from[2][c];
-                self.pairs.low[1][at] = from[3][c];
-            }
+    fn write<S: Four>(&mut self, s: S, h: f64, points: &mut Points) -> Result<(), Stop> {
+        let mut next = Next { sound: 0.0, states: &mut self.next };
+        match &self.kernel {
+            Kernel::Centre(k) => k.advance(s, h, &mut next),
+            Kernel::Pairs(k) => k.advance(s, h, &mut next),
+        }
+        if next.sound != 0.0 {
+            return Err(Stop::NotFinite);
+        }
+        for (b, [q, q_low, v, v_low]) in self.next.iter().enumerate() {
+            (points.q[b], self.low.q[b], points.v[b], self.low.v[b]) = (*q, *q_low, *v, *v_low);
+        }
+        Ok(())
+    }
+}
+
+/// Where a kernel puts a body's position and velocity.
+trait Sink {
+    fn put<S: Four>(&mut self, body: usize, q: Two<S>, v: Two<S>);
+}
+
+/// The whole state, both words; `sound` is 0 as long as all is finite.
+struct Next<'a> {
+    sound: f64,
+    states: &'a mut [[DVec3; 4]],
+}
+
+impl Sink for Next<'_> {
+    #[inline(always)]
+    fn put<S: Four>(&mut self, body: usize, q: Two<S>, v: Two<S>) {
+        // Infinite, or no number, times 0 is no number.
+        self.sound += ((q.high + v.high) * 0.0).sum_of_three();
+        if let Some(state) = self.states.get_mut(body) {
+            *state = [q.high.vector(), q.low.vector(), v.high.vector(), v.low.vector()];
         }
     }
+}
 
-    /// The state at the end of the step.
+/// Positions and velocities of the bodies from `first` on, as many as there are places.
+struct Seen<'a> {
+    first: usize,
+    q: &'a mut [DVec3],
+    v: &'a mut [DVec3],
+}
+
+impl Sink for Seen<'_> {
     #[inline(always)]
-    fn write(&mut self, points: &mut Points) -> Result<(), Stop> {
-        let (n, h, back) = (points.q.len(), self.span / self.unit, 1.0 / self.unit);
-        let mut sound = true;
-        for c in 0..3 {
-            for first in (0..n).step_by(4) {
-                let at = self.pairs.index(c, first);
-                let two = |k: usize| (lanes::load(&self.pairs.x[k], at), lanes::load(&self.pairs.low[k], at));
-                let (q, v) = step::advance(two(0), two(1), two(2), self.order, h, |k| lanes::load(&self.pairs.x[k], at));
-                for l in 0..4.min(n - first) {
-                    sound &= q.0[l].is_finite() && v.0[l].is_finite();
-                    points.q[first + l][c] = q.0[l];
-                    points.v[first + l][c] = v.0[l] * back;
-                    self.low.q[first + l][c] = q.1[l];
-                    self.low.v[first + l][c] = v.1[l] * back;
-                }
-            }
+    fn put<S: Four>(&mut self, body: usize, q: Two<S>, v: Two<S>) {
+        let at = body.wrapping_sub(self.first);
+        if let (Some(to), Some(rate)) = (self.q.get_mut(at), self.v.get_mut(at)) {
+            (*to, *rate) = (q.high.vector(), v.high.vector());
         }
-        if sound { Ok(()) } else { Err(Stop::NotFinite) }
     }
 }
 
@@ -191,11 +254,27 @@ struct One<'a> {
     t_end: f64,
 }
 
-impl pulp::NullaryFnOnce for One<'_> {
+impl OnFour for One<'_> {
     type Output = Result<bool, Stop>;
 
     #[inline(always)]
-    fn call(self) -> Self::Output {
-        self.method.step_inner(self.points, self.t_end)
+    fn go<S: Four>(self, s: S) -> Self::Output {
+        self.method.step_on(s, self.points, self.t_end)
+    }
+}
+
+/// The last step's polynomial at one time, the same way.
+struct At<'a> {
+    method: &'a Taylor,
+    t: f64,
+    to: Seen<'a>,
+}
+
+impl OnFour for At<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn go<S: Four>(mut self, s: S) {
+        self.method.advance(s, (self.t - self.method.start.0) - self.method.start.1, &mut self.to);
     }
 }
