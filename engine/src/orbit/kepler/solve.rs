@@ -46,7 +46,10 @@ impl<T: Real> Step<T> {
         // δ = u(1 − a + 2a² − b + 5ab − 5a³ − c), c = −βu²a/12.
         let aa = a * a;
         let tail = (a - (aa + aa - b)) - a * ((b - aa) * 5.0 + buu * (1.0 / 12.0));
-        Self { d: u - u * tail, square: aa.max(b.abs()).max(buu.abs()), miss, radius, bend, third }
+        let (d, square) = (u - u * tail, aa.max(b.abs()).max(buu.abs()));
+        // At the very centre r = 0, and there is nowhere to go; nor is there by a series that does not converge.
+        let sound = d.both(square.below(d.all(1.0)), d.abs().at_most(d.all(1e150)));
+        Self { d: T::pick(sound, d, d.all(0.0)), square, miss, radius, bend, third }
     }
 
     /// Whether a single step was enough.
