@@ -55,7 +55,7 @@ pub(super) const MOST_TURNS: f64 = 2e15;
 pub(super) const LONGEST: f64 = 1e140;
 
 /// Scaled gravitational parameter below which it bends nothing that an f64 could tell.
-pub(super) const LEAST: f64 = 1e-100;
+pub(super) const LEAST: f64 = 1e-60;
 
 /// The power of two at or below |x|, −1023 for what is smaller than a normal number.
 #[expect(clippy::cast_possible_truncation, reason = "eleven bits")]
