@@ -58,7 +58,6 @@ pub(super) const LONGEST: f64 = 1e140;
 pub(super) const LEAST: f64 = 1e-60;
 
 /// The power of two at or below |x|, −1023 for what is smaller than a normal number.
-#[expect(clippy::cast_possible_truncation, reason = "eleven bits")]
 fn exponent(x: f64) -> i32 {
     ((x.to_bits() >> 52) & 0x7ff) as i32 - 1023
 }
@@ -141,7 +140,7 @@ impl Scaled {
     /// After a time in which any path that bends no more has become straight, or without a centre worth the name.
     #[cold]
     fn beyond(&self, dt: f64, dt_s: f64, pericentre: Pericentre) -> (DVec3, DVec3) {
-        if !(self.orbit.mu.hi > LEAST) {
+        if self.orbit.mu.hi <= LEAST {
             return self.straight(dt_s);
         }
         let bent = LONGEST.copysign(dt);
