@@ -217,6 +217,9 @@ pub enum Probe {
     /// Height of the ground at points of a CSV file (columns lat_deg, lon_deg)
     #[command(after_help = "Example:\n  syzygy probe height --body earth --points points.csv")]
     Height(ProbeHeightArgs),
+    /// Two-body states after a time, for the starts of a CSV file (columns gm,x,y,z,vx,vy,vz,dt; any consistent units)
+    #[command(after_help = "Example:\n  syzygy probe kepler --cases tests/reference/kepler_cases.csv")]
+    Kepler(ProbeKeplerArgs),
     /// Position and velocity of a body, ICRF axes
     #[command(after_help = "Example:\n  syzygy probe ephemeris --body moon --center earth --tdb 2461265.241041667")]
     Ephemeris(ProbeEphemerisArgs),
@@ -262,6 +265,20 @@ pub struct ProbeHeightArgs {
     #[command(flatten)]
     /// What all probes share.
     pub common: ProbeCommon,
+}
+
+/// Arguments of `probe kepler`.
+#[derive(Clone, Debug, Args)]
+pub struct ProbeKeplerArgs {
+    /// Starts: CSV with the columns gm, x, y, z, vx, vy, vz and dt (others are passed over)
+    #[arg(long, value_name = "F.csv")]
+    pub cases: PathBuf,
+    /// Write here instead of stdout
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+    #[command(flatten)]
+    /// Folders.
+    pub places: Places,
 }
 
 /// Arguments of `probe ephemeris`.

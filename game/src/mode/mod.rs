@@ -53,6 +53,10 @@ pub enum Error {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Height(#[from] probe::height::HeightError),
+    /// No two-body states.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Kepler(#[from] probe::kepler::KeplerError),
     /// A body that the system does not have.
     #[error("there is no body `{body}`")]
     #[diagnostic(help("{help}"))]
@@ -159,6 +163,7 @@ fn places_of(mode: &Mode) -> &Places {
         Mode::CheckAssets(a) => &a.places,
         Mode::Probe(Probe::Air(a)) => &a.common.places,
         Mode::Probe(Probe::Height(a)) => &a.common.places,
+        Mode::Probe(Probe::Kepler(a)) => &a.places,
         Mode::Probe(Probe::Ephemeris(a)) => &a.common.places,
     }
 }

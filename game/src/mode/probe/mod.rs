@@ -3,6 +3,7 @@
 pub mod air;
 pub mod ephemeris;
 pub mod height;
+pub mod kepler;
 
 use super::Error;
 use super::stage::Stage;
@@ -12,6 +13,7 @@ use crate::world::system::System;
 use engine::orbit::BodyId;
 use std::fs::File;
 use std::io::{self, Write};
+use std::path::Path;
 use std::sync::Arc;
 
 /// Answers a probe.
@@ -21,20 +23,24 @@ pub fn run(probe: &Probe) -> Result<(), Error> {
             let system = system(&args.common)?;
             let body = system.body(find(&system, &args.body)?);
             let Some(air) = &body.air else { return Err(Error::NoAir(args.body.clone())) };
-            answer(&args.common, |out| air::write(&air.column, &args.altitude_m, out))
+            answer(args.common.out.as_deref(), |out| air::write(&air.column, &args.altitude_m, out))
         }
         Probe::Height(args) => {
             let points = height::points(&args.points)?;
             let system = system(&args.common)?;
             let body = system.body(find(&system, &args.body)?);
             let Some(relief) = &body.relief else { return Err(height::HeightError::NoGround(args.body.clone()).into()) };
-            answer(&args.common, |out| height::write(relief, &points, out))
+            answer(args.common.out.as_deref(), |out| height::write(relief, &points, out))
+        }
+        Probe::Kepler(args) => {
+            let cases = kepler::cases(&args.cases)?;
+            answer(args.out.as_deref(), |out| kepler::write(&cases, out))
         }
         Probe::Ephemeris(args) => {
             let system = system(&args.common)?;
             let body = find(&system, &args.body)?;
             let center = args.center.as_deref().map(|c| find(&system, c)).transpose()?;
-            answer(&args.common, |out| ephemeris::write(&system.ephemeris, body, center, &args.tdb, out))
+            answer(args.common.out.as_deref(), |out| ephemeris::write(&system.ephemeris, body, center, &args.tdb, out))
         }
     }
 }
@@ -51,9 +57,9 @@ fn find(system: &System, key: &str) -> Result<BodyId, Error> {
     })
 }
 
-fn answer(common: &ProbeCommon, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Error> {
-    let Some(path) = &common.out else { return Ok(write(&mut io::stdout().lock())?) };
-    let failed = |source| Error::Out { path: path.clone(), source };
+fn answer(out: Option<&Path>, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Error> {
+    let Some(path) = out else { return Ok(write(&mut io::stdout().lock())?) };
+    let failed = |source| Error::Out { path: path.to_owned(), source };
     let mut file = File::create(path).map_err(failed)?;
     write(&mut file).map_err(failed)
 }
