@@ -116,6 +116,16 @@ impl Ephemeris {
         out.0
     }
 
+    /// Takes over what another handle of the same system has integrated (its files were read again); of another system nothing.
+    pub fn take_over(&self, other: &Self) {
+        if let (Some(a), Some(b)) = (&self.system, &other.system)
+            && a.key == b.key
+        {
+            // Checked like any cache: that costs milliseconds.
+            let _ = self.from_bytes(&other.to_bytes());
+        }
+    }
+
     /// Takes over what [`Ephemeris::to_bytes`] of the same system gave, where it reaches further than what is there.
     ///
     /// # Errors

@@ -19,6 +19,11 @@ struct Task {
 }
 
 impl Ephemeris {
+    /// True where everything from `from` to `to` has been integrated.
+    pub fn is_prepared(&self, from: SimTime, to: SimTime) -> bool {
+        self.system.as_deref().is_none_or(|system| tasks(system, from, to).iter().all(|task| done(system, task)))
+    }
+
     /// Integrates everything from `from` to `to` on as many threads as there are processors, the planets first; `progress` hears how much
     /// is done, 0 … 1. False where `cancel` was set before the end. Whoever asks meanwhile gets the same bits as without it.
     pub fn prepare(&self, from: SimTime, to: SimTime, progress: &(dyn Fn(f64) + Sync), cancel: &AtomicBool) -> bool {
@@ -43,6 +48,13 @@ impl Ephemeris {
         });
         !cancel.load(Ordering::Relaxed)
     }
+}
+
+/// True where all of a task is done.
+fn done(system: &System, task: &Task) -> bool {
+    let level = &system.levels[task.level];
+    let wanted = outwards(task.last) + i64::from(level.keeps());
+    i64::try_from(level.grown(usize::from(task.last < 0))).is_ok_and(|grown| grown >= wanted)
 }
 
 /// How many chunks outwards a chunk is.

@@ -313,6 +313,7 @@ fn a_cache_gives_the_same_bits_and_is_never_trusted() {
     let heard = heard.into_inner().unwrap();
     assert!(heard.is_sorted() && (heard.last().unwrap() - 1.0).abs() < 1e-9, "{heard:?}");
     let bytes = made.to_bytes();
+    assert!(made.is_prepared(from, to) && !fresh.is_prepared(from, to) && !made.is_prepared(from, to.plus(400 * DAY_TICKS)));
     assert_eq!(fresh.from_bytes(&bytes), Ok(()));
     assert_eq!(fresh.to_bytes(), bytes);
     let t = EPOCH.plus(333 * DAY_TICKS);
