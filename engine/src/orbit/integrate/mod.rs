@@ -8,6 +8,7 @@
 //! - [`composition`]: symplectic, of fixed step, orders 2 to 8.
 //! - [`wisdom_holman`]: Kepler orbits and kicks, moons in a hierarchy of their own, correctors.
 //! - [`sums`]: additions and products that keep what rounding drops.
+//! - [`series`]: arithmetic of power series, the parts of every Taylor method.
 //!
 //! Not here: what attracts whom ([`super::gravity`]), closed forms ([`super::kepler`]).
 
@@ -17,6 +18,7 @@ pub mod gauss_radau;
 pub mod runge_kutta;
 pub mod sums;
 pub mod wisdom_holman;
+pub mod series;
 
 use glam::DVec3;
 
