@@ -10,7 +10,7 @@
 //! - [Wisdom & Holman 1991] "Symplectic maps for the n-body problem", AJ 102, 1528 (Jacobi coordinates, §3).
 
 use super::elements::Elements;
-use super::events::Reach;
+use super::field::Reach;
 use super::kepler::Conic;
 use super::{BodyId, State};
 use crate::space::{Icrf, Position, Velocity};

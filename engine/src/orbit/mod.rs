@@ -4,10 +4,9 @@
 //! [`ephemeris`] (position and velocity of body B at time t: the narrow interface), [`arc`] (a coasting ship's path), [`events`] (the tick at which it meets something),
 //! [`field`] (which terms of gravity count for a ship).
 
-pub mod arc;
+pub mod path;
 pub mod elements;
 pub mod ephemeris;
-pub mod events;
 pub mod field;
 pub mod gravity;
 pub mod integrate;
