@@ -99,7 +99,8 @@ impl Step {
         let field = model.field(knot.host);
         let gm = field.map_or(0.0, |f| f.source.gm_m3_s2);
         let fall_s = (distance * distance * distance / gm).sqrt();
-        let unit_s = unit_below(fall_s.min(distance / v.length()));
+        let burn_s = setting.thrust.map_or(f64::INFINITY, |t| 1.0 / t.growth_per_s.abs());
+        let unit_s = unit_below(fall_s.min(distance / v.length()).min(burn_s));
         let mut x = [DVec3::ZERO; LEN];
         (x[0], x[1]) = (r, v * unit_s);
         let mut r_squared = [0.0; LEN];
@@ -116,7 +117,8 @@ impl Step {
                 *s = square(&x, k);
             }
         }
-        let span = natural(&x, &r_squared).min(valid_s / unit_s);
+        // Of a/(1 − growth t) the last term is then below 1e-22 of the first, however far out the ship is.
+        let span = natural(&x, &r_squared).min(valid_s.min(0.1 * burn_s) / unit_s);
         let until = ending(knot.at, span * unit_s);
         let mut step = Self { knot, until, end: End::Natural, unit_s, x, r_squared };
         if let Some(body) = model.body(knot.host) {
