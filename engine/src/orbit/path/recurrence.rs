@@ -14,7 +14,8 @@
 //! - [Montenbruck & Gill 2000] "Satellite Orbits".
 //! - [Burns, Lamy & Soter 1979] "Radiation forces on small particles in the solar system", Icarus 40, 1.
 
-use super::series::{LEN, ORDER, Scalar, Vector, index, power, product, scaled, square};
+use super::series::{LEN, ORDER, Scalar, Vector, index};
+use crate::orbit::integrate::series::{inverse_cube as cube, norm_squared as square, power, product, scaled, square as squared};
 use glam::DVec3;
 
 /// Speed of light, m/s (exact).
@@ -85,11 +86,6 @@ const EIGHT_TO: Scalar = {
     }
     list
 };
-
-/// k-th coefficient of `s^{−3/2}`.
-fn cube(s: &Scalar, u: &Scalar, k: usize) -> f64 {
-    if k == 0 { 1.0 / (s[0] * s[0].sqrt()) } else { power(s, u, -1.5, k) }
-}
 
 /// Thrust over a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -221,7 +217,7 @@ impl Host {
         let before = |s: &Vector| if k > 0 { s[k - 1] } else { DVec3::ZERO };
         self.z[k] = x[k].dot(self.pole[0]) + before(x).dot(self.pole[1]);
         self.inverse[k] = if k == 0 { 1.0 / r2[0] } else { power(r2, &self.inverse, -1.0, k) };
-        self.z_squared[k] = product(&self.z, &self.z, k);
+        self.z_squared[k] = squared(&self.z, k);
         self.s_squared[k] = product(&self.z_squared, &self.inverse, k);
         self.fifth[k] = product(&self.cube, &self.inverse, k);
         let one = if k == 0 { 1.0 } else { 0.0 };
@@ -232,7 +228,7 @@ impl Host {
         let mut pole = -3.0 * j2 * product(&self.z, &self.fifth, k);
         if j3 != 0.0 || j4 != 0.0 {
             self.seventh[k] = product(&self.fifth, &self.inverse, k);
-            self.s_fourth[k] = product(&self.s_squared, &self.s_squared, k);
+            self.s_fourth[k] = squared(&self.s_squared, k);
             self.odd[k] = product(&self.z, &self.seventh, k);
             self.legendre[1][k] = 17.5 * self.s_squared[k] - 7.5 * one;
             self.legendre[2][k] = 39.375 * self.s_fourth[k] - 26.25 * self.s_squared[k] + 1.875 * one;

@@ -13,9 +13,10 @@ use super::knot::Knot;
 use super::model::{LEAVE, Model, Places};
 use super::recurrence::{self, Forces, Third, Thrust};
 use super::roots;
-use super::series::{LEN, ORDER, Scalar, Vector, index, square, value};
+use super::series::{LEN, ORDER, Scalar, Vector, index, value};
 use super::twofold::Twofold;
 use crate::orbit::field::Field;
+use crate::orbit::integrate::series::norm_squared as square;
 use crate::orbit::{BodyId, State};
 use crate::space::Centred;
 use crate::time::{Moment, SimTime, TICK_S};
@@ -30,7 +31,7 @@ const SWING: f64 = 0.75;
 /// … so r stays between these multiples of its start.
 const RANGE: (f64, f64) = (0.5, 1.323);
 /// Terms from this one on are summed to one word.
-const EXACT: usize = 5;
+const EXACT: usize = 6;
 /// Steps of at least so many ticks end on one.
 const WHOLE_TICKS: f64 = 8.0;
 

@@ -1,10 +1,8 @@
 //! Twofold: a vector as the sum of two f64 words, so that thousands of steps do not wear its last digits off.
 //!
-//! Error-free transformations without fused multiply-add: the same bits on every machine. Not here: who needs them
-//! ([`super::step`]).
-//! - [Dekker 1971] "A floating-point technique for extending the available precision", Numer. Math. 18, 224.
-//! - [Knuth 1998] "The Art of Computer Programming" 2, §4.2.2, theorem B (the sum of two).
+//! Not here: the error-free sum and product that it is made of ([`crate::orbit::integrate::sums`]), who needs it ([`super::step`]).
 
+use crate::orbit::integrate::sums::{two_product, two_sum};
 use glam::DVec3;
 
 /// `high + low`, with |low| at most half an ulp of high. Metres or metres per second.
@@ -14,29 +12,6 @@ pub struct Twofold {
     pub high: DVec3,
     /// What f64 leaves out.
     pub low: DVec3,
-}
-
-/// `a + b` and its rounding error, exactly [Knuth 1998].
-pub fn two_sum(a: f64, b: f64) -> (f64, f64) {
-    let sum = a + b;
-    let back = sum - a;
-    (sum, (a - (sum - back)) + (b - back))
-}
-
-/// `a × b` and its rounding error, exactly [Dekker 1971]; beyond 1e290 the error is not finite and counts as none.
-pub fn two_product(a: f64, b: f64) -> (f64, f64) {
-    let product = a * b;
-    let (ah, al) = split(a);
-    let (bh, bl) = split(b);
-    let error = ((ah * bh - product) + ah * bl + al * bh) + al * bl;
-    (product, if error.is_finite() { error } else { 0.0 })
-}
-
-fn split(a: f64) -> (f64, f64) {
-    // 2²⁷ + 1 halves the 53 bits.
-    let c = 134_217_729.0 * a;
-    let high = c - (c - a);
-    (high, a - high)
 }
 
 fn each(f: impl Fn(usize) -> (f64, f64)) -> (DVec3, DVec3) {
@@ -89,9 +64,5 @@ mod tests {
         }
         assert_eq!(one, DVec3::splat(1.0));
         assert!((two.low - DVec3::splat(1e-14) + (two.high - DVec3::splat(1.0))).length() < 1e-28);
-        // (1 + 2⁻⁴⁰)² = 1 + 2⁻³⁹ + 2⁻⁸⁰: the last term lies beyond f64.
-        let a = 1.0 + libm::ldexp(1.0, -40);
-        assert_eq!(two_product(a, a), (1.0 + libm::ldexp(1.0, -39), libm::ldexp(1.0, -80)));
-        assert_eq!(two_product(1e300, 1e10), (f64::INFINITY, 0.0));
     }
 }
