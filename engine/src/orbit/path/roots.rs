@@ -3,7 +3,7 @@
 //! In Bernstein's form a polynomial has no more roots than its coefficients change sign, and none or one are exact
 //! [Farouki 2012, §4.2]; where there are more changes the interval is halved. A pair of roots that lies closer together than
 //! rounding (some 1e-15 of the greatest coefficient) may be found or not; anything wider is found.
-//! Not here: of what ([`super::events`]).
+//! Not here: of what ([`super::step`] for the end of a step, [`crate::orbit::predict::marks`]).
 //! - [Farouki 2012] "The Bernstein polynomial basis: a centennial retrospective", Comput. Aided Geom. Des. 29, 379.
 
 use super::series::{LEN, ORDER, Scalar, index};

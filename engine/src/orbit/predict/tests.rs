@@ -125,7 +125,7 @@ fn a_finite_burn_gives_tsiolkovskys_speed_and_tends_to_the_impulse() {
 #[test]
 fn closest_approach_is_where_a_scan_finds_it() {
     let (model, places) = system(false);
-    let start = Knot::new(BodyId(0), START, &state([6.771e6, 0.0, 0.0], [0.0, 10.6e3, 900.0]));
+    let start = Knot::new(BodyId(0), START, &state([6.771e6, 0.0, 0.0], [-300.0, 10.6e3, 900.0]));
     let until = START.plus(60 * 86_400 * 9);
     let limits = Limits { target: Some(BodyId(1)), ..Limits::until(until) };
     let p = predict(&model, &places, start, &[], &limits);
