@@ -170,7 +170,7 @@ impl Checker<'_> {
     }
     fn knot(&mut self, host: BodyId, state: &State<engine::space::Centred>, k: &KnotV1) -> Knot {
         let tick = self.ticks("ship.motion.Coast.knot.tick", k.tick);
-        let beyond_s = self.within("ship.motion.Coast.knot.beyond_s", k.beyond_s, 0.0, TICK_S);
+        let beyond_s = self.within("ship.motion.Coast.knot.beyond_s", k.beyond_s, 0.0, 2.0 * TICK_S);
         let position = self.vector("ship.motion.Coast.knot.position_low_m", k.position_low_m, 1.0);
         let velocity = self.vector("ship.motion.Coast.knot.velocity_low_m_s", k.velocity_low_m_s, 1.0);
         Knot {

@@ -5,8 +5,8 @@
 use super::World;
 use super::ship::guidance::Phase;
 use super::ship::{CoastAttitude, Motion, Rigid};
-use engine::orbit::State;
 use crate::command::{Guidance, Hold};
+use engine::orbit::State;
 use engine::space::{Frame, Position, Rotation, Velocity};
 use glam::{DQuat, DVec3};
 

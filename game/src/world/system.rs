@@ -1,5 +1,7 @@
 //! The system: which bodies exist, how big they are, how they turn, what covers them. Built from validated assets.
 
+use super::ship::local::air_top_m;
+use super::ship::warp::floor_m;
 use engine::air::Medium;
 use engine::air::density::Column;
 use engine::orbit::BodyId;
@@ -10,8 +12,6 @@ use engine::orbit::path::{self, Model};
 use engine::orbit::rotation::Spin;
 use engine::terrain::Relief;
 use glam::Vec3;
-use super::ship::local::air_top_m;
-use super::ship::warp::floor_m;
 use std::sync::Arc;
 
 /// The air of a body: what drags (`column`) and what one sees (`medium`), described apart.

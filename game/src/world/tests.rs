@@ -1,5 +1,7 @@
 //! Tests of the World as a whole, on small made-up systems: coasting, warp, air, holds, hover, landing.
 
+mod coast;
+
 use super::readout::Situation;
 use super::ship::spec::ShipSpec;
 use super::ship::spec::tests::torch;

@@ -65,8 +65,11 @@ mod tests {
     use crate::time::SimTime;
     use crate::units::{AU, DAY, DEG};
 
+    /// Parent, GM, position, velocity.
+    type Listed = (Option<u16>, f64, [f64; 3], [f64; 3]);
+
     /// Sun, Venus, Earth, Moon, Jupiter of SS11 in `orbit_cases.json` (JPL DE440, J2000.0; AU, AU/day, AU³/day²).
-    const BODIES: [(Option<u16>, f64, [f64; 3], [f64; 3]); 5] = [
+    const BODIES: [Listed; 5] = [
         (
             None,
             2.959_122_082_841_195_6e-4,
@@ -120,8 +123,7 @@ mod tests {
             (0..5_u16)
                 .map(|i| {
                     let o = &orbits[usize::from(i)];
-                    let mut source =
-                        Source { parent: o.parent, reach: places.reach(BodyId(i)), gm_m3_s2: o.gm_m3_s2, ..Source::default() };
+                    let mut source = Source { parent: o.parent, reach: places.reach(BodyId(i)), gm_m3_s2: o.gm_m3_s2, ..Source::default() };
                     if i == 2 {
                         source.zonal = [1.082_625_39e-3, -2.532_41e-6, -1.619_898e-6];
                         source.reference_radius_m = 6.378_136_6e6;
