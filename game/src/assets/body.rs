@@ -8,7 +8,7 @@ use super::reader::{ANY, POSITIVE, Reader};
 use super::relief::read_relief;
 use engine::orbit::State;
 use engine::orbit::ephemeris::{MeanOrbit, Path};
-use engine::orbit::rotation::{Spin, Term};
+use engine::orbit::rotation::{Model, Spin, Term};
 use engine::space::{Icrf, Position, Velocity};
 use engine::terrain::ReliefSpec;
 use engine::time::SimTime;
@@ -103,7 +103,16 @@ fn read_spin(r: Reader<'_>) -> Spin {
         let term = |[a, p, w]: [f64; 3]| Term { amplitude_rad: a * DEG, phase_rad: p * DEG, rate_rad_per_century: w * DEG };
         rows.into_iter().map(term).collect()
     };
+    // The Earth's turning is observed: the model has its own numbers, and one left beside it would be read by nobody.
+    if r.maybe_text("model").is_some() {
+        let model = r.choice("model", &["iau", "earth"]);
+        if model == "earth" {
+            r.finish();
+            return Spin::earth();
+        }
+    }
     let spin = Spin {
+        model: Model::Iau,
         pole_ra_rad: [r.number("pole_ra_deg", TURN) * DEG, r.number("pole_ra_deg_per_century", TURN) * DEG],
         pole_dec_rad: [r.number("pole_dec_deg", -90.0..=90.0) * DEG, r.number("pole_dec_deg_per_century", TURN) * DEG],
         meridian_rad: [r.number("meridian_deg", TURN) * DEG, r.number("meridian_deg_per_day", -1e6..=1e6) * DEG],
