@@ -1,10 +1,11 @@
 //! Orbits: how a state moves under gravity. Pure f64, cited, tested.
 //!
 //! Read [`state`], then [`kepler`] (two-body propagation), [`elements`], [`rotation`] (where a body's axes point),
-//! [`ephemeris`] (position and velocity of body B at time t: the narrow interface), [`arc`] (a coasting ship's path), [`events`] (the tick at which it meets something),
+//! [`ephemeris`] (position and velocity of body B at time t: the narrow interface), [`eclipse`] (whose shadow falls on whom, when and where), [`arc`] (a coasting ship's path), [`events`] (the tick at which it meets something),
 //! [`field`] (which terms of gravity count for a ship).
 
 pub mod arc;
+pub mod eclipse;
 pub mod elements;
 pub mod ephemeris;
 pub mod events;

@@ -101,13 +101,13 @@ pub fn icrf_from_fixed(t: f64, ut1: (f64, f64)) -> DQuat {
     let t = t.clamp(-REACH, REACH);
     let gamma = arcsec(t, [-0.052_928, 10.556_378, 0.493_204_4, -0.000_312_38, -0.000_002_788, 0.000_000_026]);
     let phi = arcsec(t, [84_381.412_819, -46.811_016, 0.051_126_8, 0.000_532_89, -0.000_000_44, -0.000_000_017_6]);
-    let psi = arcsec(t, [-0.041_775, 5038.481_484, 1.558_417_5, -0.000_185_22, -0.000_026_452, -0.000_000_014_8]);
+    let psi = arcsec(t, [-0.041_775, 5_038.481_484, 1.558_417_5, -0.000_185_22, -0.000_026_452, -0.000_000_014_8]);
     let epsilon = arcsec(t, [84_381.406, -46.836_769, -0.000_183_1, 0.002_003_4, -0.000_000_576, -0.000_000_043_4]);
     let ([delta_psi, delta_epsilon], [sin_node, sin_two_nodes]) = nutation(t);
     let (days, fraction) = ut1;
     // The angle turns once a day and 0.0027 times more: whole turns never enter the sum.
     let era = TAU * libm::fmod(0.779_057_273_264 + fraction + 0.002_737_811_911_354_5 * (days + fraction), 1.0);
-    let mean = arcsec(t, [0.014_506, 4612.156_534, 1.391_581_7, -0.000_000_44, -0.000_029_956, -0.000_000_036_8]);
+    let mean = arcsec(t, [0.014_506, 4_612.156_534, 1.391_581_7, -0.000_000_44, -0.000_029_956, -0.000_000_036_8]);
     let equinoxes = delta_psi * libm::cos(epsilon) + (0.002_640_96 * sin_node + 0.000_063_52 * sin_two_nodes) * ARCSEC;
     about_z(gamma) * about_x(phi) * about_z(-(psi + delta_psi)) * about_x(-(epsilon + delta_epsilon)) * about_z(era + mean + equinoxes)
 }
