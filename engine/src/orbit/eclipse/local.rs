@@ -50,11 +50,11 @@ struct Here {
 
 impl Observer {
     fn at(&self, cast: &Cast<'_>, paths: &Paths<'_>, t: Moment) -> Here {
-        let figure = &cast.receiver.figure;
+        let shape = &cast.receiver.shape;
         let shadow = Shadow::at(cast, paths, t);
         let icrf_from_fixed = cast.receiver.spin.icrf_from_fixed_at(t);
-        let ground = figure.point(self.place);
-        let up = figure.normal(ground);
+        let ground = shape.point(self.place);
+        let up = shape.normal(ground);
         let p = icrf_from_fixed.raw(ground + up * self.height_m);
         let to_axis = shadow.offset - p;
         let upstream = -p.dot(shadow.axis);
@@ -67,8 +67,8 @@ impl Observer {
             inner_m: shadow.umbra(cast).at(upstream),
             star_altitude_rad: libm::asin(icrf_from_fixed.raw(up).dot(star.normalize_or(-shadow.axis)).clamp(-1.0, 1.0)),
             discs_rad: [
-                radius(cast.star.figure.limb_m[0], star),
-                radius(cast.caster.figure.limb_m[1], caster),
+                radius(cast.star.shape.limb_m[0], star),
+                radius(cast.caster.shape.limb_m[1], caster),
                 libm::atan2(caster.cross(star).length(), caster.dot(star)),
             ],
         }

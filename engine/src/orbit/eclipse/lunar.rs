@@ -17,10 +17,10 @@ fn angle(radius_m: f64, distance_m: f64) -> f64 {
 /// Radii of penumbra and umbra, of the receiver, and its distance from the axis: rad, seen from the caster.
 fn angles(cast: &Cast<'_>, shadow: &Shadow) -> [f64; 4] {
     let distance_m = libm::hypot(shadow.behind_m, shadow.miss_m());
-    let earth = &cast.caster.figure;
+    let earth = &cast.caster.shape;
     let width = angle(earth.equatorial_m * earth.shadow, distance_m) + angle(earth.equatorial_m, shadow.star_m);
-    let star = angle(cast.star.figure.limb_m[0], shadow.star_m);
-    [width + star, width - star, angle(cast.receiver.figure.limb_m[0], distance_m), angle(shadow.miss_m(), distance_m)]
+    let star = angle(cast.star.shape.limb_m[0], shadow.star_m);
+    [width + star, width - star, angle(cast.receiver.shape.limb_m[0], distance_m), angle(shadow.miss_m(), distance_m)]
 }
 
 /// The eclipse whose axis passes closest at `greatest`; `None` where even the penumbra passes by.
@@ -56,7 +56,7 @@ pub fn describe(cast: &Cast<'_>, paths: &Paths<'_>, greatest: Moment) -> Option<
         },
         greatest,
         light_s: shadow.light_s,
-        gamma: -shadow.miss_m().copysign(shadow.offset.dot(icrf_from_caster.raw(DVec3::Z))) / cast.caster.figure.equatorial_m,
+        gamma: -shadow.miss_m().copysign(shadow.offset.dot(icrf_from_caster.raw(DVec3::Z))) / cast.caster.shape.equatorial_m,
         magnitude: depth(umbra),
         penumbral_magnitude: depth(penumbra),
         central: miss < radius,

@@ -10,7 +10,7 @@
 //! - [`solar`] where the receiver is the larger: a spot runs over it (the Moon on the Earth, Io on Jupiter);
 //! - [`lunar`] where the caster is: the receiver dips into a shadow (the Earth on the Moon, Jupiter on Io).
 //!
-//! [`local`] says what is seen from one place; [`figure`] is the receiver's ellipsoid.
+//! [`local`] says what is seen from one place; [`shape`] is the receiver's ellipsoid.
 //!
 //! Not here: which bodies to try and what to call it (`game::world::eclipse`), light and discs (`crate::light`).
 //! Refraction by air, the lunar limb's mountains and polar motion are left out: seconds at most.
@@ -19,7 +19,7 @@
 //! - [Espenak & Meeus 2009] "Five Millennium Canon of Lunar Eclipses", NASA TP-2009-214172: shadow by Danjon's rule.
 //! - [ESAE 1992] "Explanatory Supplement to the Astronomical Almanac", ch. 8: Besselian elements.
 
-pub mod figure;
+pub mod shape;
 pub mod local;
 pub mod lunar;
 pub mod search;
@@ -28,7 +28,7 @@ pub mod solar;
 #[cfg(test)]
 mod tests;
 
-pub use figure::Figure;
+pub use shape::Shape;
 pub use local::Local;
 pub use search::Pace;
 pub use shadow::Shadow;
@@ -49,7 +49,7 @@ pub struct Role<'a> {
     /// How it turns.
     pub spin: &'a Spin,
     /// How large it is.
-    pub figure: Figure,
+    pub shape: Shape,
 }
 
 /// Who takes part.
@@ -66,7 +66,7 @@ pub struct Cast<'a> {
 impl Cast<'_> {
     /// True where the receiver is the larger: a spot runs over it, and eclipses are those of the star.
     pub fn is_solar(&self) -> bool {
-        self.receiver.figure.equatorial_m >= self.caster.figure.equatorial_m
+        self.receiver.shape.equatorial_m >= self.caster.shape.equatorial_m
     }
 }
 

@@ -102,9 +102,9 @@ pub fn closest(cast: &Cast<'_>, paths: &Paths<'_>, pace: Pace, from: Moment, to:
 
 /// How far from the receiver's centre an axis can pass and its penumbra still touch, m, with some to spare.
 fn reach_m(cast: &Cast<'_>, caster_m: f64, star_m: f64) -> f64 {
-    let limb = cast.caster.figure.limb_m[0].max(cast.caster.figure.equatorial_m * cast.caster.figure.shadow);
-    let spread = (cast.star.figure.limb_m[0] + limb) / (star_m - caster_m).max(star_m * 0.01).max(1.0);
-    1.02 * (limb + caster_m * spread + cast.receiver.figure.equatorial_m.max(cast.receiver.figure.limb_m[0]))
+    let limb = cast.caster.shape.limb_m[0].max(cast.caster.shape.equatorial_m * cast.caster.shape.shadow);
+    let spread = (cast.star.shape.limb_m[0] + limb) / (star_m - caster_m).max(star_m * 0.01).max(1.0);
+    1.02 * (limb + caster_m * spread + cast.receiver.shape.equatorial_m.max(cast.receiver.shape.limb_m[0]))
 }
 
 /// A root of `f` between `a` and `b`, where its signs differ: regula falsi that halves a stale end's value [Dowell & Jarratt 1971].

@@ -64,14 +64,14 @@ impl Shadow {
 
     /// The penumbra: tangents that cross between star and caster.
     pub fn penumbra(&self, cast: &Cast<'_>) -> Cone {
-        let limb = cast.caster.figure.limb_m[0];
-        self.cone((cast.star.figure.limb_m[0] + limb) / self.star_m.max(1.0), limb)
+        let limb = cast.caster.shape.limb_m[0];
+        self.cone((cast.star.shape.limb_m[0] + limb) / self.star_m.max(1.0), limb)
     }
 
     /// The umbra: the outer tangents.
     pub fn umbra(&self, cast: &Cast<'_>) -> Cone {
-        let limb = cast.caster.figure.limb_m[1];
-        self.cone((cast.star.figure.limb_m[0] - limb) / self.star_m.max(1.0), -limb)
+        let limb = cast.caster.shape.limb_m[1];
+        self.cone((cast.star.shape.limb_m[0] - limb) / self.star_m.max(1.0), -limb)
     }
 
     /// Distance of the axis from the receiver's centre, m.

@@ -23,13 +23,13 @@ impl Footprint {
         let shadow = Shadow::at(cast, paths, t);
         let fixed_from_icrf = cast.receiver.spin.icrf_from_fixed_at(t).inverse();
         let (axis, offset) = (fixed_from_icrf.raw(shadow.axis), fixed_from_icrf.raw(shadow.offset));
-        let (gap_m, limb) = cast.receiver.figure.outline(offset, axis);
+        let (gap_m, limb) = cast.receiver.shape.outline(offset, axis);
         Self { shadow, axis, offset, gap_m, limb }
     }
 
     /// The point that is darkest: where the axis meets the surface, else the outline's nearest.
     fn darkest(&self, cast: &Cast<'_>) -> (DVec3, bool) {
-        cast.receiver.figure.first_hit(self.offset, self.axis).map_or((self.limb, false), |hit| (hit, true))
+        cast.receiver.shape.first_hit(self.offset, self.axis).map_or((self.limb, false), |hit| (hit, true))
     }
 
     /// Distance of a surface point from the axis, and how far upstream it lies, m.
@@ -43,7 +43,7 @@ impl Footprint {
 pub fn centre(cast: &Cast<'_>, paths: &Paths<'_>, t: Moment) -> Option<Place> {
     let foot = Footprint::at(cast, paths, t);
     let (p, hit) = foot.darkest(cast);
-    (hit && foot.shadow.behind_m > 0.0).then(|| cast.receiver.figure.place(p))
+    (hit && foot.shadow.behind_m > 0.0).then(|| cast.receiver.shape.place(p))
 }
 
 /// The central line: `count` places at equal steps of time from where the axis comes on to where it leaves.
@@ -70,7 +70,7 @@ pub fn describe(cast: &Cast<'_>, paths: &Paths<'_>, greatest: Moment) -> Option<
     // [ESAE 1992, §8.3622]: the ratio of the discs under the axis, else the covered part of the diameter.
     let magnitude = if central { (outer - inner) / (outer + inner) } else { (outer - from_axis) / (outer + inner) };
 
-    let radius_m = cast.receiver.figure.equatorial_m;
+    let radius_m = cast.receiver.shape.equatorial_m;
     let step_s = (radius_m + penumbra.radius_m) / crossing_m_s(cast, paths, greatest) / 12.0;
     let gap = |t: Moment, reach: &dyn Fn(&Shadow) -> f64| {
         let foot = Footprint::at(cast, paths, t);
@@ -89,12 +89,12 @@ pub fn describe(cast: &Cast<'_>, paths: &Paths<'_>, greatest: Moment) -> Option<
         _ if inner < 0.0 => Kind::Total,
         _ => Kind::Annular,
     };
-    let figure = &cast.receiver.figure;
+    let shape = &cast.receiver.shape;
     let north = cast.receiver.spin.icrf_from_fixed_at(greatest).raw(DVec3::Z);
     // Beside the axis the canon gives the direction of its nearest point as if on a sphere; so do we (the outline's own point lies
     // within 0.2° of it, on the line where the star sets).
     let place = if central {
-        figure.place(point)
+        shape.place(point)
     } else {
         let (lat_rad, lon_rad) = crate::space::sphere::lat_lon_of(foot.offset);
         Place { lat_rad, lon_rad }
@@ -109,7 +109,7 @@ pub fn describe(cast: &Cast<'_>, paths: &Paths<'_>, greatest: Moment) -> Option<
         penumbral_magnitude: magnitude,
         central,
         place,
-        star_altitude_rad: libm::asin((-figure.normal(point).dot(foot.axis)).clamp(-1.0, 1.0)),
+        star_altitude_rad: libm::asin((-shape.normal(point).dot(foot.axis)).clamp(-1.0, 1.0)),
         penumbra: during(&|s| s.penumbra(cast).radius_m)?,
         umbra: if covered { during(&|s| s.umbra(cast).radius_m.abs()) } else { None },
         core,

@@ -53,12 +53,12 @@ impl Table {
     }
 }
 
-/// The canons' figures: the Moon's two radii are 0.2725076 and 0.272281 of the Earth's, the Sun's is 959.63″ at 1 AU.
-fn figures() -> [Figure; 3] {
+/// The canons' shapes: the Moon's two radii are 0.2725076 and 0.272281 of the Earth's, the Sun's is 959.63″ at 1 AU.
+fn shapes() -> [Shape; 3] {
     let a = 6_378.137 * KM;
-    let earth = Figure { equatorial_m: a, flattening: 1.0 / 298.257_222, limb_m: [a; 2], shadow: 1.01 };
-    let moon = Figure { equatorial_m: 1737.4 * KM, flattening: 0.0, limb_m: [0.272_507_6 * a, 0.272_281 * a], shadow: 1.0 };
-    [Figure::sphere(695_990.0 * KM), earth, moon]
+    let earth = Shape { equatorial_m: a, flattening: 1.0 / 298.257_222, limb_m: [a; 2], shadow: 1.01 };
+    let moon = Shape { equatorial_m: 1737.4 * KM, flattening: 0.0, limb_m: [0.272_507_6 * a, 0.272_281 * a], shadow: 1.0 };
+    [Shape::sphere(695_990.0 * KM), earth, moon]
 }
 
 fn spins() -> [Spin; 3] {
@@ -67,10 +67,10 @@ fn spins() -> [Spin; 3] {
 }
 
 fn cast(spins: &[Spin; 3], solar: bool) -> Cast<'_> {
-    let [sun, earth, moon] = figures();
-    let star = Role { id: SUN, spin: &spins[0], figure: sun };
-    let earth = Role { id: EARTH, spin: &spins[1], figure: earth };
-    let moon = Role { id: MOON, spin: &spins[2], figure: moon };
+    let [sun, earth, moon] = shapes();
+    let star = Role { id: SUN, spin: &spins[0], shape: sun };
+    let earth = Role { id: EARTH, spin: &spins[1], shape: earth };
+    let moon = Role { id: MOON, spin: &spins[2], shape: moon };
     if solar { Cast { star, caster: moon, receiver: earth } } else { Cast { star, caster: earth, receiver: moon } }
 }
 
@@ -198,7 +198,7 @@ fn the_central_line_leads_through_the_place_of_greatest_eclipse() {
 }
 
 /// A star at the origin; a small body that passes before a large one 10,000 km aside of the centre line of both.
-fn toy(miss_m: f64) -> (impl Fn(BodyId, Moment) -> State<Icrf>, [Figure; 3]) {
+fn toy(miss_m: f64) -> (impl Fn(BodyId, Moment) -> State<Icrf>, [Shape; 3]) {
     let t0 = Moment::default();
     let paths = move |b: BodyId, t: Moment| {
         let s = t.since(t0);
@@ -209,14 +209,14 @@ fn toy(miss_m: f64) -> (impl Fn(BodyId, Moment) -> State<Icrf>, [Figure; 3]) {
         };
         State { position: Position::new(r), velocity: Velocity::ZERO }
     };
-    (paths, [Figure::sphere(7e8), Figure::sphere(7e6), Figure::sphere(2e6)])
+    (paths, [Shape::sphere(7e8), Shape::sphere(7e6), Shape::sphere(2e6)])
 }
 
 #[test]
 fn a_drawn_shadow_has_drawn_edges() {
     let spins = spins();
     let (paths, [sun, large, small]) = toy(0.0);
-    let role = |k: usize, figure| Role { id: BodyId(u16::try_from(k).unwrap()), spin: &spins[0], figure };
+    let role = |k: usize, shape| Role { id: BodyId(u16::try_from(k).unwrap()), spin: &spins[0], shape };
     let cast = Cast { star: role(0, sun), caster: role(2, small), receiver: role(1, large) };
     let e = solar::describe(&cast, &paths, Moment::default()).unwrap();
     // Similar triangles, by hand: at 4e8 m behind, the penumbra is 2e6 + 4e8 (7e8 + 2e6)/(AU − 4e8) wide, the umbra 2e6 − 4e8 (7e8 − 2e6)/(…).
@@ -242,7 +242,7 @@ fn neither_a_graze_nor_a_miss_is_invented() {
     for (miss, expected) in [(0.999, true), (1.001, false)] {
         // The axis passes the receiver AU/(AU − 4e8) farther out than the caster stands aside.
         let (paths, [sun, large, small]) = toy(miss * reach * (1.0 - 4e8 / AU));
-        let role = |k: u16, figure| Role { id: BodyId(k), spin: &spins[0], figure };
+        let role = |k: u16, shape| Role { id: BodyId(k), spin: &spins[0], shape };
         let cast = Cast { star: role(0, sun), caster: role(2, small), receiver: role(1, large) };
         let mut count = 0;
         let at = |s: f64| Moment::default().plus_s(s);

@@ -1,4 +1,4 @@
-//! The figure of a body for eclipses: an ellipsoid of revolution, and the radii that its limb shows.
+//! The shape of a body for eclipses: an ellipsoid of revolution, and the radii that its limb shows.
 //!
 //! Not here: relief. Vectors are in the body's own axes (+Z the pole) unless said otherwise.
 
@@ -7,7 +7,7 @@ use glam::DVec3;
 
 /// How large a body is where shadows are counted.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Figure {
+pub struct Shape {
     /// Equatorial radius, m.
     pub equatorial_m: f64,
     /// `(a − b)/a`.
@@ -18,7 +18,7 @@ pub struct Figure {
     pub shadow: f64,
 }
 
-impl Figure {
+impl Shape {
     /// A smooth sphere without air.
     pub const fn sphere(radius_m: f64) -> Self {
         Self { equatorial_m: radius_m, flattening: 0.0, limb_m: [radius_m; 2], shadow: 1.0 }
@@ -86,8 +86,8 @@ mod tests {
     use super::*;
     use crate::units::{DEG, KM};
 
-    const EARTH: Figure =
-        Figure { equatorial_m: 6_378.137 * KM, flattening: 1.0 / 298.257_223_563, limb_m: [6_378.137 * KM; 2], shadow: 1.01 };
+    const EARTH: Shape =
+        Shape { equatorial_m: 6_378.137 * KM, flattening: 1.0 / 298.257_223_563, limb_m: [6_378.137 * KM; 2], shadow: 1.01 };
 
     #[test]
     fn geodetic_places_come_back() {
