@@ -6,6 +6,7 @@ use super::overlay::{Overlay, read_text};
 use super::reader::{Faults, POSITIVE, Reader};
 use super::relief::load_maps;
 use super::tree::{Node, parse};
+use crate::world::eclipse::almanac::Almanac;
 use crate::world::system::{Air, Body, System};
 use engine::orbit::BodyId;
 use engine::orbit::State;
@@ -287,6 +288,7 @@ fn build(
         radius_m: s.radius_m,
         soi_radius_m,
         spin: s.spin.clone(),
+        shape: s.shape,
         albedo: s.albedo,
         intensity_cd: s.intensity_cd,
         air: s.air.clone().and_then(|a| Some(Air { column: a.column?, medium: a.medium? })),
@@ -294,5 +296,5 @@ fn build(
         relief_max: s.relief.as_ref().map_or(1.0, |(_, max)| *max),
     });
     let bodies = bodies.collect();
-    Ok(System { key: key.to_owned(), name, bodies, ephemeris, hash })
+    Ok(System { key: key.to_owned(), name, bodies, ephemeris, hash, eclipses: Almanac::default() })
 }

@@ -160,6 +160,7 @@ fn places_of(mode: &Mode) -> &Places {
         Mode::Probe(Probe::Air(a)) => &a.common.places,
         Mode::Probe(Probe::Height(a)) => &a.common.places,
         Mode::Probe(Probe::Ephemeris(a)) => &a.common.places,
+        Mode::Probe(Probe::Eclipses(a)) => &a.common.places,
     }
 }
 

@@ -1,8 +1,10 @@
 //! The system: which bodies exist, how big they are, how they turn, what covers them. Built from validated assets.
 
+use super::eclipse::almanac::Almanac;
 use engine::air::Medium;
 use engine::air::density::Column;
 use engine::orbit::BodyId;
+use engine::orbit::eclipse::Shape;
 use engine::orbit::ephemeris::Ephemeris;
 use engine::orbit::rotation::Spin;
 use engine::terrain::Relief;
@@ -35,6 +37,8 @@ pub struct Body {
     pub soi_radius_m: f64,
     /// Pole and prime meridian.
     pub spin: Spin,
+    /// Its shape where shadows are counted (the ground and the picture use the datum sphere).
+    pub shape: Shape,
     /// Mean surface albedo, linear sRGB.
     pub albedo: Vec3,
     /// Luminous intensity, cd per linear sRGB channel; zero for all but stars.
@@ -60,6 +64,8 @@ pub struct System {
     pub ephemeris: Ephemeris,
     /// blake3 of the asset files that the World depends on, hex; a replay refuses others.
     pub hash: String,
+    /// What is known of its eclipses so far.
+    pub eclipses: Almanac,
 }
 
 impl System {

@@ -1,6 +1,7 @@
 //! `syzygy probe`: one number or table at a time, for tests and tools outside.
 
 pub mod air;
+pub mod eclipses;
 pub mod ephemeris;
 pub mod height;
 
@@ -35,6 +36,11 @@ pub fn run(probe: &Probe) -> Result<(), Error> {
             let body = find(&system, &args.body)?;
             let center = args.center.as_deref().map(|c| find(&system, c)).transpose()?;
             answer(&args.common, |out| ephemeris::write(&system.ephemeris, body, center, &args.tdb, out))
+        }
+        Probe::Eclipses(args) => {
+            let system = system(&args.common)?;
+            let (on, by) = (find(&system, &args.on)?, find(&system, &args.by)?);
+            answer(&args.common, |out| eclipses::write(&system, on, by, args, out))
         }
     }
 }
