@@ -231,6 +231,10 @@ pub enum Probe {
         after_help = "Example:\n  syzygy probe propagate --case tests/reference/orbit_cases.json --name LEO_1000orb --method gauss_radau --tol 1e-9"
     )]
     Propagate(ProbePropagateArgs),
+    /// Eclipses on a body by another: when, what kind, where, and what one place sees
+    #[command(after_help = "Example:\n  syzygy probe eclipses --on earth --by moon --from 2461000 --to 2461500 --at 43.37,-8.40\n  \
+        syzygy probe eclipses --on moon --by earth --from 2461000 --to 2462000")]
+    Eclipses(ProbeEclipsesArgs),
 }
 
 /// What can be measured.
@@ -340,6 +344,32 @@ pub struct ProbePropagateArgs {
     pub common: ProbeCommon,
 }
 
+/// Arguments of `probe eclipses`.
+#[derive(Clone, Debug, Args)]
+pub struct ProbeEclipsesArgs {
+    /// The body that the shadow falls on, by its folder's name
+    #[arg(long, value_name = "B")]
+    pub on: String,
+    /// The body that throws it
+    #[arg(long, value_name = "C")]
+    pub by: String,
+    /// Greatest not before this Julian date of TT
+    #[arg(long, value_name = "JD", allow_hyphen_values = true, value_parser = julian_date)]
+    pub from: f64,
+    /// Greatest not after this Julian date of TT
+    #[arg(long, value_name = "JD", allow_hyphen_values = true, value_parser = julian_date)]
+    pub to: f64,
+    /// Also tell what is seen from a place (geodetic latitude and east longitude, °); may be given several times
+    #[arg(long, value_name = "LAT,LON", allow_hyphen_values = true, value_parser = place)]
+    pub at: Vec<(f64, f64)>,
+    /// Also tell so many points of the central line
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=10_000))]
+    pub line: u16,
+    #[command(flatten)]
+    /// What all probes share.
+    pub common: ProbeCommon,
+}
+
 /// Arguments of `bench orbit`.
 #[derive(Clone, Debug, Args)]
 pub struct BenchOrbitArgs {
@@ -398,6 +428,14 @@ fn julian_date(text: &str) -> Result<f64, String> {
         return Err("expected a Julian date of TDB within 100,000 years of J2000 (2451545.0)".to_owned());
     }
     Ok(jd)
+}
+
+/// `43.37,-8.40` → (43.37, −8.40).
+fn place(text: &str) -> Result<(f64, f64), String> {
+    let expected = || "expected LATITUDE,LONGITUDE in degrees, for example 43.37,-8.40".to_owned();
+    let (lat, lon) = text.split_once(',').ok_or_else(expected)?;
+    let number = |s: &str, most: f64| s.trim().parse::<f64>().ok().filter(|x| x.abs() <= most).ok_or_else(expected);
+    Ok((number(lat, 90.0)?, number(lon, 360.0)?))
 }
 
 /// A finite number.
@@ -494,6 +532,9 @@ mod tests {
             (finite("inf").is_ok(), false),
             (positive("-1e-9").is_ok(), false),
             (positive("0").is_ok(), false),
+            (place("43.37,-8.40").is_ok(), true),
+            (place("93.37,-8.40").is_ok(), false),
+            (place("NaN,0").is_ok(), false),
             (picture("a.PNG").is_ok(), true),
             (picture("a.gif").is_ok(), false),
         ] {

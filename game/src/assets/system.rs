@@ -288,6 +288,7 @@ fn build(
         soi_radius_m,
         spin: s.spin.clone(),
         figure: s.figure.clone(),
+        shape: s.shape,
         albedo: s.albedo,
         intensity_cd: s.intensity_cd,
         air: s.air.clone().and_then(|a| Some(Air { column: a.column?, medium: a.medium? })),

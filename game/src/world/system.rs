@@ -2,9 +2,11 @@
 
 use super::ship::local::air_top_m;
 use super::ship::warp::floor_m;
+use super::eclipse::almanac::Almanac;
 use engine::air::Medium;
 use engine::air::density::Column;
 use engine::orbit::BodyId;
+use engine::orbit::eclipse::Shape;
 use engine::orbit::ephemeris::Ephemeris;
 use engine::orbit::field::{Bound, Source};
 use engine::orbit::gravity::figure::Figure;
@@ -42,6 +44,8 @@ pub struct Body {
     pub spin: Spin,
     /// How its gravity differs from a point's; ships feel its zonal terms.
     pub figure: Option<Figure>,
+    /// Its shape where shadows are counted (the ground and the picture use the datum sphere).
+    pub shape: Shape,
     /// Mean surface albedo, linear sRGB.
     pub albedo: Vec3,
     /// Luminous intensity, cd per linear sRGB channel; zero for all but stars.
@@ -69,6 +73,8 @@ pub struct System {
     pub gravity: Model,
     /// blake3 of the asset files that the World depends on, hex; a replay refuses others.
     pub hash: String,
+    /// What is known of its eclipses so far.
+    pub eclipses: Almanac,
 }
 
 impl System {
@@ -88,7 +94,7 @@ impl System {
             }
         };
         let gravity = Model::new(bodies.iter().enumerate().map(as_met).collect(), Bound::COAST);
-        Self { key, name, bodies, ephemeris, gravity, hash }
+        Self { key, name, bodies, ephemeris, gravity, hash, eclipses: Almanac::default() }
     }
     /// The body behind a handle.
     pub fn body(&self, id: BodyId) -> &Body {

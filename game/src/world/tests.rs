@@ -37,6 +37,7 @@ fn rock(gm: f64, radius_m: f64, spin: Spin, air: Option<Air>) -> Body {
         soi_radius_m: f64::INFINITY,
         spin,
         figure: None,
+        shape: engine::orbit::eclipse::Shape::sphere(radius_m),
         albedo: Vec3::splat(0.1),
         intensity_cd: Vec3::ZERO,
         air,
