@@ -166,12 +166,28 @@ impl Orbit {
     #[allow(clippy::cast_precision_loss)] // orders are small
     fn sweep<S: Four, const K: usize>(&mut self, s: S) {
         let (u, inverse) = (&self.u, self.e[0].3);
-        macro_rules! d { ($k:expr) => { Lanes::new(s, self.d[$k]) }; }
-        macro_rules! e { ($k:expr) => { Lanes::new(s, self.e[$k]) }; }
+        macro_rules! d {
+            ($k:expr) => {
+                Lanes::new(s, self.d[$k])
+            };
+        }
+        macro_rules! e {
+            ($k:expr) => {
+                Lanes::new(s, self.e[$k])
+            };
+        }
         // Of order k, the weight of (r²)_m.
-        macro_rules! weight { ($k:expr, $m:expr) => { -((2 * $k + $m) as f64) / ((2 * $k) as f64) }; }
+        macro_rules! weight {
+            ($k:expr, $m:expr) => {
+                -((2 * $k + $m) as f64) / ((2 * $k) as f64)
+            };
+        }
         // Terms of all but the newest orders: force in lanes x, y, z, and in the last the sum for u, times k.
-        macro_rules! old { ($order:expr, $j:expr) => { d!($order - $j) * u[$j] * Lanes::new(s, WEIGHTS[3 * $order - $j]) }; }
+        macro_rules! old {
+            ($order:expr, $j:expr) => {
+                d!($order - $j) * u[$j] * Lanes::new(s, WEIGHTS[3 * $order - $j])
+            };
+        }
         let (mut f, mut g, mut f_odd, mut g_odd) = (old!(K, 2), old!(K + 1, 2), Lanes::zero(s), Lanes::zero(s));
         for j in (3..K - 2).step_by(2) {
             f_odd = f_odd + old!(K, j);
