@@ -157,6 +157,18 @@ impl<S: Four> Lanes<S> {
         Self { s, v: s.transmute_f64s_u64s(s.or_u64s(s.and_u64s(kept, REST), s.and_u64s(new, LAST))) }
     }
 
+    /// Lanes 1, 2, 0: of three bodies in a ring, the next.
+    #[inline(always)]
+    pub(super) fn next_of_three(self) -> Self {
+        Self { s: self.s, v: f64x4(self.v.1, self.v.2, self.v.0, self.v.3) }
+    }
+
+    /// Lanes 2, 0, 1: of three bodies in a ring, the one before.
+    #[inline(always)]
+    pub(super) fn last_of_three(self) -> Self {
+        Self { s: self.s, v: f64x4(self.v.2, self.v.0, self.v.1, self.v.3) }
+    }
+
     #[inline(always)]
     pub(super) fn larger(self, other: Self) -> Self {
         Self { s: self.s, v: self.s.max_f64s(self.v, other.v) }
