@@ -30,7 +30,7 @@ pub struct Cli {
 #[derive(Debug, Subcommand)]
 pub enum Mode {
     /// Open the window and play
-    #[command(after_help = "Example:\n  syzygy play --start low-orbit --size 1920x1080")]
+    #[command(after_help = "Example:\n  syzygy play --start leo --size 1920x1080")]
     Play(PlayArgs),
     /// Run the same session without a window
     #[command(after_help = "Example:\n  syzygy headless --start eclipse --ticks 3600 --save out.syzsave --film saves/film")]
@@ -49,6 +49,9 @@ pub enum Mode {
     /// Ask the simulation for numbers, as JSON or CSV
     #[command(subcommand, after_help = "Example:\n  syzygy probe air --body earth --altitude-m 0 11000 50000")]
     Probe(Probe),
+    /// Measure run time against error
+    #[command(subcommand, after_help = "Example:\n  syzygy bench orbit --case LEO_1000orb --plot plots")]
+    Bench(Bench),
 }
 
 /// Where things are; the same for every mode.
@@ -173,7 +176,8 @@ pub struct ShotArgs {
     /// The moment, a Julian date of TDB (else the start's)
     #[arg(long, value_name = "JD", value_parser = julian_date, allow_hyphen_values = true)]
     pub tdb: Option<f64>,
-    /// The camera: `chase`, `cockpit`, `free` or `map`, with `key=value` settings after a colon
+    /// The camera: `chase[:YAW,PITCH[,DISTANCE_M]]`, `cockpit[:YAW,PITCH]`, `map:BODY,YAW,PITCH,RADII` or
+    /// `at:BODY,LAT,LON,HEIGHT_M,HEADING,PITCH[,FOV]` (degrees; the heading may be `sun`, `sun+30`)
     #[arg(long, value_name = "CAMERA", default_value = "chase")]
     pub camera: String,
     /// Size of the picture, pixels
@@ -222,6 +226,19 @@ pub enum Probe {
     /// Position and velocity of a body, ICRF axes
     #[command(after_help = "Example:\n  syzygy probe ephemeris --body moon --center earth --tdb 2461265.241041667")]
     Ephemeris(ProbeEphemerisArgs),
+    /// A case of orbital motion by any integrator: where it ends, the energy's error, the cost
+    #[command(
+        after_help = "Example:\n  syzygy probe propagate --case tests/reference/orbit_cases.json --name LEO_1000orb --method gauss_radau --tol 1e-9"
+    )]
+    Propagate(ProbePropagateArgs),
+}
+
+/// What can be measured.
+#[derive(Debug, Subcommand)]
+pub enum Bench {
+    /// Every integrator on every case of the reference data: error against CPU time and evaluations
+    #[command(after_help = "Example:\n  syzygy bench orbit --case LEO_1000orb --method gauss_radau --json leo.json --plot plots")]
+    Orbit(BenchOrbitArgs),
 }
 
 /// Arguments that all probes share.
@@ -297,6 +314,61 @@ pub struct ProbeEphemerisArgs {
     pub common: ProbeCommon,
 }
 
+/// Arguments of `probe propagate`.
+#[derive(Clone, Debug, Args)]
+pub struct ProbePropagateArgs {
+    /// The case, or several by name: JSON of the form of tests/reference/orbit_cases.json
+    #[arg(long, value_name = "F.json")]
+    pub case: PathBuf,
+    /// Which of several cases; `NAME@T` ends at the reference time T
+    #[arg(long, value_name = "NAME")]
+    pub name: Option<String>,
+    /// When it ends, in the case's unit of time (else as the file says)
+    #[arg(long, value_name = "T", value_parser = finite, allow_hyphen_values = true)]
+    pub t: Option<f64>,
+    /// The integrator
+    #[arg(long, value_name = "M")]
+    pub method: String,
+    /// Tolerance of an adaptive method (else its own)
+    #[arg(long, value_name = "T", value_parser = positive, allow_hyphen_values = true, conflicts_with = "dt")]
+    pub tol: Option<f64>,
+    /// Step of a method of fixed step, in the case's unit of time
+    #[arg(long, value_name = "S", value_parser = positive, allow_hyphen_values = true)]
+    pub dt: Option<f64>,
+    #[command(flatten)]
+    /// What all probes share.
+    pub common: ProbeCommon,
+}
+
+/// Arguments of `bench orbit`.
+#[derive(Clone, Debug, Args)]
+pub struct BenchOrbitArgs {
+    /// Write the rows here instead of stdout
+    #[arg(long, value_name = "F.json")]
+    pub json: Option<PathBuf>,
+    /// Draw error against CPU time and evaluations, a picture a case, into this folder
+    #[arg(long, value_name = "DIR")]
+    pub plot: Option<PathBuf>,
+    /// Rows of other programs, measured on this machine (tests/peers), to draw beside
+    #[arg(long, value_name = "F.json")]
+    pub peers: Option<PathBuf>,
+    /// Only these cases; several may be named, `NAME@T` ends at a reference time
+    #[arg(long, value_name = "NAME")]
+    pub case: Vec<String>,
+    /// Only these integrators
+    #[arg(long, value_name = "M")]
+    pub method: Vec<String>,
+    /// Evaluations of the force after which a method of fixed step is not refined further
+    #[arg(long, value_name = "N", default_value_t = 2_000_000, value_parser = clap::value_parser!(u64).range(1..))]
+    pub most: u64,
+    /// Stress the integrators instead: long spans, spikes of the step, scales, near collisions
+    #[arg(long)]
+    pub stress: bool,
+    #[command(flatten)]
+    /// Folders.
+    pub places: Places,
+}
+
 /// Parses the command line. On `--help` and on wrong usage the text is printed and the exit code given back.
 ///
 /// # Errors
@@ -331,6 +403,11 @@ fn julian_date(text: &str) -> Result<f64, String> {
 /// A finite number.
 fn finite(text: &str) -> Result<f64, String> {
     text.parse::<f64>().ok().filter(|x| x.is_finite()).ok_or_else(|| "expected a finite number".to_owned())
+}
+
+/// A finite number above 0.
+fn positive(text: &str) -> Result<f64, String> {
+    finite(text).ok().filter(|x| *x > 0.0).ok_or_else(|| "expected a number above 0, for example 1e-9".to_owned())
 }
 
 /// A path that ends in `.png` or `.exr`.
@@ -368,6 +445,15 @@ mod tests {
         fn walk(command: &mut clap::Command, path: &str) {
             let help = command.render_long_help().to_string();
             assert!(path.ends_with("help") || help.contains("Example"), "{path}: {help}");
+            // What an example says is taken by the program, and the starts that it names are there.
+            for line in help.lines().filter(|l| l.starts_with("  syzygy ")) {
+                let words: Vec<&str> = line.split("    ").next().unwrap_or(line).split_whitespace().skip(1).collect();
+                cli(&words).unwrap_or_else(|e| panic!("{line}: {e}"));
+                for pair in words.windows(2).filter(|pair| pair[0] == "--start") {
+                    let start = format!("{}/../assets/starts/{}.toml", env!("CARGO_MANIFEST_DIR"), pair[1]);
+                    assert!(std::path::Path::new(&start).is_file(), "{line}: no start `{}`", pair[1]);
+                }
+            }
             for sub in command.get_subcommands_mut() {
                 let path = format!("{path} {}", sub.get_name());
                 walk(sub, &path);
@@ -406,6 +492,8 @@ mod tests {
             (julian_date("NaN").is_ok(), false),
             (julian_date("1e30").is_ok(), false),
             (finite("inf").is_ok(), false),
+            (positive("-1e-9").is_ok(), false),
+            (positive("0").is_ok(), false),
             (picture("a.PNG").is_ok(), true),
             (picture("a.gif").is_ok(), false),
         ] {

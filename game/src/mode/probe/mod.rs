@@ -4,8 +4,11 @@ pub mod air;
 pub mod ephemeris;
 pub mod height;
 pub mod kepler;
+pub mod propagate;
 
 use super::Error;
+use super::bench::orbit_case;
+use super::bench::orbit_method::Method;
 use super::stage::Stage;
 use crate::assets::fault::did_you_mean;
 use crate::cli::{Probe, ProbeCommon};
@@ -41,6 +44,12 @@ pub fn run(probe: &Probe) -> Result<(), Error> {
             let body = find(&system, &args.body)?;
             let center = args.center.as_deref().map(|c| find(&system, c)).transpose()?;
             answer(args.common.out.as_deref(), |out| ephemeris::write(&system.ephemeris, body, center, &args.tdb, out))
+        }
+        Probe::Propagate(args) => {
+            let method = Method::find(&args.method)?;
+            let setting = method.setting(args.tol, args.dt)?;
+            let case = orbit_case::read(&args.case, args.name.as_deref(), args.t)?;
+            answer(args.common.out.as_deref(), |out| propagate::write(&case, method, setting, out))
         }
     }
 }

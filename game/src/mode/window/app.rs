@@ -5,6 +5,7 @@ mod asked;
 mod drawing;
 mod watch;
 
+use super::ahead::Ahead;
 use super::canvas::Canvas;
 use super::clock::Clock;
 use super::flight::{self, Flight};
@@ -62,6 +63,8 @@ pub struct App {
     pipelines: Option<Job<Result<Renderer, RenderError>>>,
     world: Option<Job<Begun>>,
     flight: Option<Flight>,
+    /// The paths of the flight's bodies, being worked out.
+    ahead: Option<Ahead>,
     watch: watch::Watch,
     clicked: Vec<Action>,
     clock: Clock,
@@ -108,6 +111,7 @@ impl App {
             pipelines: None,
             world: None,
             flight: None,
+            ahead: None,
             watch: watch::Watch::default(),
             clicked: Vec::new(),
             clock: Clock::default(),
@@ -174,6 +178,7 @@ impl App {
             return;
         }
         self.hear_watch();
+        self.hud.paths_ahead = self.ahead.as_mut().and_then(Ahead::poll);
         self.set_focus();
         for control in self.input.take_view_controls() {
             self.control(control);
