@@ -171,18 +171,14 @@ impl Pairs {
                 let at = c * self.stride + first;
                 let (x, low) = (&self.x, &self.low);
                 let third = Two { high: Lanes::load(s, &x[3], at), low: Lanes::zero(s) };
-                let start = [
-                    Two::load(s, &x[0], &low[0], at),
-                    Two::load(s, &x[1], &low[1], at),
-                    Two::load(s, &x[2], &low[2], at),
-                    third,
-                ];
+                let start = [Two::load(s, &x[0], &low[0], at), Two::load(s, &x[1], &low[1], at), Two::load(s, &x[2], &low[2], at), third];
                 let (q, v) = step::advance(start, self.order, h, |k| Lanes::load(s, &x[k], at));
                 let v = v.scaled(back);
                 *part = [q.high.array(), q.low.array(), v.high.array(), v.low.array()];
             }
             for l in 0..4.min(self.n - first) {
-                let (q, v) = (Two::new(s, across(&parts, 0, l), across(&parts, 1, l)), Two::new(s, across(&parts, 2, l), across(&parts, 3, l)));
+                let (q, v) =
+                    (Two::new(s, across(&parts, 0, l), across(&parts, 1, l)), Two::new(s, across(&parts, 2, l), across(&parts, 3, l)));
                 to.put(first + l, q, v);
             }
         }
