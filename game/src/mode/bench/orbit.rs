@@ -68,6 +68,7 @@ fn settings(method: &Method, case: &Case, most: u64) -> Vec<Setting> {
     match method {
         Method::GaussRadau => decades(4, 10),
         Method::DormandPrince(_) => decades(6, 15),
+        Method::Taylor => decades(8, 20),
         Method::Composition(_) | Method::WisdomHolman(_) => {
             let span = (case.t_end - case.start.t).abs();
             let period = case.period.unwrap_or(span);
@@ -112,7 +113,7 @@ fn measure(case: &Case, method: Method, setting: Setting) -> Row {
             Setting::Step(x) => format!("dt={x}"),
         },
         cpu_s: least,
-        force_evals: Some(work.evaluations as f64),
+        force_evals: method.counts_forces().then_some(work.evaluations as f64),
         steps: work.steps as f64,
         position_error: finite(case.position_error(&points)).filter(|_| reached),
         energy_error: finite((case.energy(&points) - before) / before).filter(|_| reached),
