@@ -67,6 +67,8 @@ fn settings(method: &Method, case: &Case, most: u64) -> Vec<Setting> {
     let decades = |from: i32, to: i32| (from..=to).map(|k| Setting::Tolerance(libm::exp10(-f64::from(k)))).collect();
     match method {
         Method::GaussRadau => decades(4, 10),
+        // Order 5 takes ten times the steps for two digits and a half: beyond eleven it is a bench of patience.
+        Method::DormandPrince(pair) if pair.table.order < 8 => decades(5, 11),
         Method::DormandPrince(_) => decades(6, 15),
         Method::Taylor => decades(8, 20),
         Method::Composition(_) | Method::WisdomHolman(_) => {
