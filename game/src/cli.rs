@@ -49,6 +49,9 @@ pub enum Mode {
     /// Ask the simulation for numbers, as JSON or CSV
     #[command(subcommand, after_help = "Example:\n  syzygy probe air --body earth --altitude-m 0 11000 50000")]
     Probe(Probe),
+    /// Measure run time against error
+    #[command(subcommand, after_help = "Example:\n  syzygy bench orbit --case LEO_1000orb --plot plots")]
+    Bench(Bench),
 }
 
 /// Where things are; the same for every mode.
@@ -217,9 +220,25 @@ pub enum Probe {
     /// Height of the ground at points of a CSV file (columns lat_deg, lon_deg)
     #[command(after_help = "Example:\n  syzygy probe height --body earth --points points.csv")]
     Height(ProbeHeightArgs),
+    /// Two-body states after a time, for the starts of a CSV file (columns gm,x,y,z,vx,vy,vz,dt; any consistent units)
+    #[command(after_help = "Example:\n  syzygy probe kepler --cases tests/reference/kepler_cases.csv")]
+    Kepler(ProbeKeplerArgs),
     /// Position and velocity of a body, ICRF axes
     #[command(after_help = "Example:\n  syzygy probe ephemeris --body moon --center earth --tdb 2461265.241041667")]
     Ephemeris(ProbeEphemerisArgs),
+    /// A case of orbital motion by any integrator: where it ends, the energy's error, the cost
+    #[command(
+        after_help = "Example:\n  syzygy probe propagate --case tests/reference/orbit_cases.json --name LEO_1000orb --method gauss_radau --tol 1e-9"
+    )]
+    Propagate(ProbePropagateArgs),
+}
+
+/// What can be measured.
+#[derive(Debug, Subcommand)]
+pub enum Bench {
+    /// Every integrator on every case of the reference data: error against CPU time and evaluations
+    #[command(after_help = "Example:\n  syzygy bench orbit --case LEO_1000orb --method gauss_radau --json leo.json --plot plots")]
+    Orbit(BenchOrbitArgs),
 }
 
 /// Arguments that all probes share.
@@ -264,6 +283,20 @@ pub struct ProbeHeightArgs {
     pub common: ProbeCommon,
 }
 
+/// Arguments of `probe kepler`.
+#[derive(Clone, Debug, Args)]
+pub struct ProbeKeplerArgs {
+    /// Starts: CSV with the columns gm, x, y, z, vx, vy, vz and dt (others are passed over)
+    #[arg(long, value_name = "F.csv")]
+    pub cases: PathBuf,
+    /// Write here instead of stdout
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+    #[command(flatten)]
+    /// Folders.
+    pub places: Places,
+}
+
 /// Arguments of `probe ephemeris`.
 #[derive(Clone, Debug, Args)]
 pub struct ProbeEphemerisArgs {
@@ -279,6 +312,61 @@ pub struct ProbeEphemerisArgs {
     #[command(flatten)]
     /// What all probes share.
     pub common: ProbeCommon,
+}
+
+/// Arguments of `probe propagate`.
+#[derive(Clone, Debug, Args)]
+pub struct ProbePropagateArgs {
+    /// The case, or several by name: JSON of the form of tests/reference/orbit_cases.json
+    #[arg(long, value_name = "F.json")]
+    pub case: PathBuf,
+    /// Which of several cases; `NAME@T` ends at the reference time T
+    #[arg(long, value_name = "NAME")]
+    pub name: Option<String>,
+    /// When it ends, in the case's unit of time (else as the file says)
+    #[arg(long, value_name = "T", value_parser = finite, allow_hyphen_values = true)]
+    pub t: Option<f64>,
+    /// The integrator
+    #[arg(long, value_name = "M")]
+    pub method: String,
+    /// Tolerance of an adaptive method (else its own)
+    #[arg(long, value_name = "T", value_parser = positive, allow_hyphen_values = true, conflicts_with = "dt")]
+    pub tol: Option<f64>,
+    /// Step of a method of fixed step, in the case's unit of time
+    #[arg(long, value_name = "S", value_parser = positive, allow_hyphen_values = true)]
+    pub dt: Option<f64>,
+    #[command(flatten)]
+    /// What all probes share.
+    pub common: ProbeCommon,
+}
+
+/// Arguments of `bench orbit`.
+#[derive(Clone, Debug, Args)]
+pub struct BenchOrbitArgs {
+    /// Write the rows here instead of stdout
+    #[arg(long, value_name = "F.json")]
+    pub json: Option<PathBuf>,
+    /// Draw error against CPU time and evaluations, a picture a case, into this folder
+    #[arg(long, value_name = "DIR")]
+    pub plot: Option<PathBuf>,
+    /// Rows of other programs, measured on this machine (tests/peers), to draw beside
+    #[arg(long, value_name = "F.json")]
+    pub peers: Option<PathBuf>,
+    /// Only these cases; several may be named, `NAME@T` ends at a reference time
+    #[arg(long, value_name = "NAME")]
+    pub case: Vec<String>,
+    /// Only these integrators
+    #[arg(long, value_name = "M")]
+    pub method: Vec<String>,
+    /// Evaluations of the force after which a method of fixed step is not refined further
+    #[arg(long, value_name = "N", default_value_t = 2_000_000, value_parser = clap::value_parser!(u64).range(1..))]
+    pub most: u64,
+    /// Stress the integrators instead: long spans, spikes of the step, scales, near collisions
+    #[arg(long)]
+    pub stress: bool,
+    #[command(flatten)]
+    /// Folders.
+    pub places: Places,
 }
 
 /// Parses the command line. On `--help` and on wrong usage the text is printed and the exit code given back.
@@ -315,6 +403,11 @@ fn julian_date(text: &str) -> Result<f64, String> {
 /// A finite number.
 fn finite(text: &str) -> Result<f64, String> {
     text.parse::<f64>().ok().filter(|x| x.is_finite()).ok_or_else(|| "expected a finite number".to_owned())
+}
+
+/// A finite number above 0.
+fn positive(text: &str) -> Result<f64, String> {
+    finite(text).ok().filter(|x| *x > 0.0).ok_or_else(|| "expected a number above 0, for example 1e-9".to_owned())
 }
 
 /// A path that ends in `.png` or `.exr`.
@@ -399,6 +492,8 @@ mod tests {
             (julian_date("NaN").is_ok(), false),
             (julian_date("1e30").is_ok(), false),
             (finite("inf").is_ok(), false),
+            (positive("-1e-9").is_ok(), false),
+            (positive("0").is_ok(), false),
             (picture("a.PNG").is_ok(), true),
             (picture("a.gif").is_ok(), false),
         ] {

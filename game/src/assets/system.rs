@@ -287,6 +287,7 @@ fn build(
         radius_m: s.radius_m,
         soi_radius_m,
         spin: s.spin.clone(),
+        figure: s.figure.clone(),
         albedo: s.albedo,
         intensity_cd: s.intensity_cd,
         air: s.air.clone().and_then(|a| Some(Air { column: a.column?, medium: a.medium? })),
@@ -294,5 +295,5 @@ fn build(
         relief_max: s.relief.as_ref().map_or(1.0, |(_, max)| *max),
     });
     let bodies = bodies.collect();
-    Ok(System { key: key.to_owned(), name, bodies, ephemeris, hash })
+    Ok(System::new(key.to_owned(), name, bodies, ephemeris, hash))
 }

@@ -7,7 +7,7 @@ use super::orbit::{Details, EphemerisError, Orbit, check};
 use super::planets::Planets;
 use super::tree::{Pair, Tree};
 use crate::orbit::elements::Elements;
-use crate::orbit::events::Reach;
+use crate::orbit::field::Reach;
 use crate::orbit::kepler::Conic;
 use crate::orbit::{BodyId, State};
 use crate::space::{Icrf, Position, Velocity};
