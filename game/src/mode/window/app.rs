@@ -21,6 +21,7 @@ use crate::settings::Settings;
 use crate::sound::{Sound, Volumes};
 use crate::view::CameraMode;
 use crate::world::World;
+use crate::world::eclipse::almanac::Event;
 use crate::world::readout::Situation;
 use engine::gpu::BackendChoice;
 use engine::render::{RenderError, Renderer, RendererOptions};
@@ -61,6 +62,7 @@ pub struct App {
     renderer: Option<Renderer>,
     pipelines: Option<Job<Result<Renderer, RenderError>>>,
     world: Option<Job<Begun>>,
+    eclipses: Option<Job<Vec<Event>>>,
     flight: Option<Flight>,
     watch: watch::Watch,
     clicked: Vec<Action>,
@@ -107,6 +109,7 @@ impl App {
             renderer: None,
             pipelines: None,
             world: None,
+            eclipses: None,
             flight: None,
             watch: watch::Watch::default(),
             clicked: Vec::new(),
@@ -174,6 +177,7 @@ impl App {
             return;
         }
         self.hear_watch();
+        self.hear_eclipses();
         self.set_focus();
         for control in self.input.take_view_controls() {
             self.control(control);

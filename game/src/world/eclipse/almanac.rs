@@ -86,11 +86,7 @@ fn apart(system: &System, a: BodyId, b: BodyId) -> Reach {
     };
     let (one, two) = (shell(&up_a, &up_b), shell(&up_b, &up_a));
     let touching = system.body(a).radius_m + system.body(b).radius_m;
-    Reach {
-        nearest_m: (one.0 - two.1).max(two.0 - one.1).max(touching),
-        farthest_m: one.1 + two.1,
-        fastest_m_s: one.2 + two.2,
-    }
+    Reach { nearest_m: (one.0 - two.1).max(two.0 - one.1).max(touching), farthest_m: one.1 + two.1, fastest_m_s: one.2 + two.2 }
 }
 
 fn pace(system: &System, cast: &Cast<'_>) -> Pace {
