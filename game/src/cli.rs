@@ -30,7 +30,7 @@ pub struct Cli {
 #[derive(Debug, Subcommand)]
 pub enum Mode {
     /// Open the window and play
-    #[command(after_help = "Example:\n  syzygy play --start low-orbit --size 1920x1080")]
+    #[command(after_help = "Example:\n  syzygy play --start leo --size 1920x1080")]
     Play(PlayArgs),
     /// Run the same session without a window
     #[command(after_help = "Example:\n  syzygy headless --start eclipse --ticks 3600 --save out.syzsave --film saves/film")]
@@ -49,6 +49,9 @@ pub enum Mode {
     /// Ask the simulation for numbers, as JSON or CSV
     #[command(subcommand, after_help = "Example:\n  syzygy probe air --body earth --altitude-m 0 11000 50000")]
     Probe(Probe),
+    /// Measure run time against error
+    #[command(subcommand, after_help = "Example:\n  syzygy bench orbit --case LEO_1000orb --plot plots")]
+    Bench(Bench),
 }
 
 /// Where things are; the same for every mode.
@@ -173,7 +176,8 @@ pub struct ShotArgs {
     /// The moment, a Julian date of TDB (else the start's)
     #[arg(long, value_name = "JD", value_parser = julian_date, allow_hyphen_values = true)]
     pub tdb: Option<f64>,
-    /// The camera: `chase`, `cockpit`, `free` or `map`, with `key=value` settings after a colon
+    /// The camera: `chase[:YAW,PITCH[,DISTANCE_M]]`, `cockpit[:YAW,PITCH]`, `map:BODY,YAW,PITCH,RADII` or
+    /// `at:BODY,LAT,LON,HEIGHT_M,HEADING,PITCH[,FOV]` (degrees; the heading may be `sun`, `sun+30`)
     #[arg(long, value_name = "CAMERA", default_value = "chase")]
     pub camera: String,
     /// Size of the picture, pixels
@@ -216,6 +220,9 @@ pub enum Probe {
     /// Height of the ground at points of a CSV file (columns lat_deg, lon_deg)
     #[command(after_help = "Example:\n  syzygy probe height --body earth --points points.csv")]
     Height(ProbeHeightArgs),
+    /// Two-body states after a time, for the starts of a CSV file (columns gm,x,y,z,vx,vy,vz,dt; any consistent units)
+    #[command(after_help = "Example:\n  syzygy probe kepler --cases tests/reference/kepler_cases.csv")]
+    Kepler(ProbeKeplerArgs),
     /// Position and velocity of a body, ICRF axes
     #[command(after_help = "Example:\n  syzygy probe ephemeris --body moon --center earth --tdb 2461265.241041667")]
     Ephemeris(ProbeEphemerisArgs),
@@ -223,6 +230,19 @@ pub enum Probe {
     #[command(after_help = "Example:\n  syzygy probe eclipses --on earth --by moon --from 2461000 --to 2461500 --at 43.37,-8.40\n  \
         syzygy probe eclipses --on moon --by earth --from 2461000 --to 2462000")]
     Eclipses(ProbeEclipsesArgs),
+    /// A case of orbital motion by any integrator: where it ends, the energy's error, the cost
+    #[command(
+        after_help = "Example:\n  syzygy probe propagate --case tests/reference/orbit_cases.json --name LEO_1000orb --method gauss_radau --tol 1e-9"
+    )]
+    Propagate(ProbePropagateArgs),
+}
+
+/// What can be measured.
+#[derive(Debug, Subcommand)]
+pub enum Bench {
+    /// Every integrator on every case of the reference data: error against CPU time and evaluations
+    #[command(after_help = "Example:\n  syzygy bench orbit --case LEO_1000orb --method gauss_radau --json leo.json --plot plots")]
+    Orbit(BenchOrbitArgs),
 }
 
 /// Arguments that all probes share.
@@ -267,6 +287,20 @@ pub struct ProbeHeightArgs {
     pub common: ProbeCommon,
 }
 
+/// Arguments of `probe kepler`.
+#[derive(Clone, Debug, Args)]
+pub struct ProbeKeplerArgs {
+    /// Starts: CSV with the columns gm, x, y, z, vx, vy, vz and dt (others are passed over)
+    #[arg(long, value_name = "F.csv")]
+    pub cases: PathBuf,
+    /// Write here instead of stdout
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+    #[command(flatten)]
+    /// Folders.
+    pub places: Places,
+}
+
 /// Arguments of `probe ephemeris`.
 #[derive(Clone, Debug, Args)]
 pub struct ProbeEphemerisArgs {
@@ -308,6 +342,61 @@ pub struct ProbeEclipsesArgs {
     #[command(flatten)]
     /// What all probes share.
     pub common: ProbeCommon,
+}
+
+/// Arguments of `probe propagate`.
+#[derive(Clone, Debug, Args)]
+pub struct ProbePropagateArgs {
+    /// The case, or several by name: JSON of the form of tests/reference/orbit_cases.json
+    #[arg(long, value_name = "F.json")]
+    pub case: PathBuf,
+    /// Which of several cases; `NAME@T` ends at the reference time T
+    #[arg(long, value_name = "NAME")]
+    pub name: Option<String>,
+    /// When it ends, in the case's unit of time (else as the file says)
+    #[arg(long, value_name = "T", value_parser = finite, allow_hyphen_values = true)]
+    pub t: Option<f64>,
+    /// The integrator
+    #[arg(long, value_name = "M")]
+    pub method: String,
+    /// Tolerance of an adaptive method (else its own)
+    #[arg(long, value_name = "T", value_parser = positive, allow_hyphen_values = true, conflicts_with = "dt")]
+    pub tol: Option<f64>,
+    /// Step of a method of fixed step, in the case's unit of time
+    #[arg(long, value_name = "S", value_parser = positive, allow_hyphen_values = true)]
+    pub dt: Option<f64>,
+    #[command(flatten)]
+    /// What all probes share.
+    pub common: ProbeCommon,
+}
+
+/// Arguments of `bench orbit`.
+#[derive(Clone, Debug, Args)]
+pub struct BenchOrbitArgs {
+    /// Write the rows here instead of stdout
+    #[arg(long, value_name = "F.json")]
+    pub json: Option<PathBuf>,
+    /// Draw error against CPU time and evaluations, a picture a case, into this folder
+    #[arg(long, value_name = "DIR")]
+    pub plot: Option<PathBuf>,
+    /// Rows of other programs, measured on this machine (tests/peers), to draw beside
+    #[arg(long, value_name = "F.json")]
+    pub peers: Option<PathBuf>,
+    /// Only these cases; several may be named, `NAME@T` ends at a reference time
+    #[arg(long, value_name = "NAME")]
+    pub case: Vec<String>,
+    /// Only these integrators
+    #[arg(long, value_name = "M")]
+    pub method: Vec<String>,
+    /// Evaluations of the force after which a method of fixed step is not refined further
+    #[arg(long, value_name = "N", default_value_t = 2_000_000, value_parser = clap::value_parser!(u64).range(1..))]
+    pub most: u64,
+    /// Stress the integrators instead: long spans, spikes of the step, scales, near collisions
+    #[arg(long)]
+    pub stress: bool,
+    #[command(flatten)]
+    /// Folders.
+    pub places: Places,
 }
 
 /// Parses the command line. On `--help` and on wrong usage the text is printed and the exit code given back.
@@ -354,6 +443,11 @@ fn finite(text: &str) -> Result<f64, String> {
     text.parse::<f64>().ok().filter(|x| x.is_finite()).ok_or_else(|| "expected a finite number".to_owned())
 }
 
+/// A finite number above 0.
+fn positive(text: &str) -> Result<f64, String> {
+    finite(text).ok().filter(|x| *x > 0.0).ok_or_else(|| "expected a number above 0, for example 1e-9".to_owned())
+}
+
 /// A path that ends in `.png` or `.exr`.
 fn picture(text: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(text);
@@ -389,6 +483,15 @@ mod tests {
         fn walk(command: &mut clap::Command, path: &str) {
             let help = command.render_long_help().to_string();
             assert!(path.ends_with("help") || help.contains("Example"), "{path}: {help}");
+            // What an example says is taken by the program, and the starts that it names are there.
+            for line in help.lines().filter(|l| l.starts_with("  syzygy ")) {
+                let words: Vec<&str> = line.split("    ").next().unwrap_or(line).split_whitespace().skip(1).collect();
+                cli(&words).unwrap_or_else(|e| panic!("{line}: {e}"));
+                for pair in words.windows(2).filter(|pair| pair[0] == "--start") {
+                    let start = format!("{}/../assets/starts/{}.toml", env!("CARGO_MANIFEST_DIR"), pair[1]);
+                    assert!(std::path::Path::new(&start).is_file(), "{line}: no start `{}`", pair[1]);
+                }
+            }
             for sub in command.get_subcommands_mut() {
                 let path = format!("{path} {}", sub.get_name());
                 walk(sub, &path);
@@ -430,6 +533,8 @@ mod tests {
             (place("43.37,-8.40").is_ok(), true),
             (place("93.37,-8.40").is_ok(), false),
             (place("NaN,0").is_ok(), false),
+            (positive("-1e-9").is_ok(), false),
+            (positive("0").is_ok(), false),
             (picture("a.PNG").is_ok(), true),
             (picture("a.gif").is_ok(), false),
         ] {

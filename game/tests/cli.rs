@@ -138,6 +138,11 @@ cases! {
     assets_that_are_not_there: nothing, ["headless", "--ticks", "1", "--assets", "no/such/place"] => 1, ["no/such/place", "--assets DIR"];
     a_mod_that_is_not_there: nothing, ["headless", "--ticks", "1", "--mods", "no/such/mod"] => 1, ["no/such/mod", "expected a folder for --mods"];
     a_start_that_does_not_exist: nothing, ["headless", "--ticks", "1", "--start", "eclips"] => 1, ["eclips", "did you mean `eclipse`?"];
+    a_start_file_that_is_missing: nothing, ["headless", "--ticks", "1", "--start", "gone.toml"] => 1, ["gone.toml", "cannot be read"];
+    a_start_file_with_a_wrong_word: |d| write(d, "mine.toml", START.replace("\"orbit\"", "\"orbits\"").as_bytes()),
+        ["headless", "--ticks", "1", "--start", "mine.toml"] => 1, ["mine.toml:9", "did you mean `orbit`?"];
+    a_start_file_of_another_name: |d| write(d, "yours.toml", START.as_bytes()),
+        ["headless", "--ticks", "1", "--start", "./yours.toml"] => 1, ["yours.toml:1", "expected the file's name"];
     a_camera_that_does_not_exist: nothing, ["shot", "--camera", "chaise", "--size", "4x4", "--out", "a.png"] => 1, ["chaise", "chase"];
     a_body_that_does_not_exist: nothing, ["probe", "air", "--body", "erth", "--altitude-m", "0"] => 1, ["erth", "did you mean `earth`?"];
 
@@ -209,6 +214,32 @@ fn a_damaged_save_falls_back_to_its_bak_and_says_so() {
     let said = String::from_utf8_lossy(&out.stderr);
     assert_eq!(out.status.code(), Some(0), "{said}");
     assert!(said.contains("checksum") && said.contains("a.syzsave.bak"), "{said}");
+    assert!(dir.path().join("b.syzsave").is_file());
+}
+
+/// A start as a player writes one for himself.
+const START: &str = r#"key = "mine"
+name = "Mine"
+description = "Over the Andes."
+system = "sol"
+ship = "torch"
+utc = "2026-08-12T12:00:00"
+
+[place]
+kind = "orbit"
+body = "earth"
+altitude_m = 400000.0
+lat_deg = -20.0
+lon_deg = -67.0
+heading_deg = 51.6
+"#;
+
+#[test]
+fn a_start_file_begins_a_flight() {
+    let dir = tempfile::tempdir().unwrap();
+    write(dir.path(), "mine.toml", START.as_bytes());
+    let out = syzygy(dir.path(), &["headless", "--ticks", "1", "--start", "mine.toml", "--save", "b.syzsave"]);
+    assert_eq!(out.status.code(), Some(0), "{}", String::from_utf8_lossy(&out.stderr));
     assert!(dir.path().join("b.syzsave").is_file());
 }
 

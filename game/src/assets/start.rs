@@ -8,17 +8,23 @@ use super::reader::{ANY, Faults, Reader};
 use super::tree::{Node, parse};
 use crate::world::start::{Place, StartSpec, TargetSpec};
 use engine::time::CivilTime;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-/// Loads `starts/<key>.toml`, that of the last mod that has it.
+/// Loads `starts/<key>.toml`, that of the last mod that has it; or the file itself, where `key` is the path of a `.toml`.
 pub fn load_start(overlay: &Overlay, key: &str) -> Result<StartSpec, AssetErrors> {
-    read_start(&named(overlay, "starts", key)?, key)
+    let path = file_of(overlay, key)?;
+    let stem = path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
+    read_start(&path, &stem)
 }
 
 /// The file of a start, for messages about what its words come to.
 pub fn start_tree(overlay: &Overlay, key: &str) -> Result<Node, AssetErrors> {
-    let source = read_text(&named(overlay, "starts", key)?).map_err(AssetErrors::one)?;
+    let source = read_text(&file_of(overlay, key)?).map_err(AssetErrors::one)?;
     parse(&source).map_err(|faults| AssetErrors { faults })
+}
+
+fn file_of(overlay: &Overlay, key: &str) -> Result<PathBuf, AssetErrors> {
+    if key.ends_with(".toml") { Ok(PathBuf::from(key)) } else { named(overlay, "starts", key) }
 }
 
 fn read_start(path: &Path, key: &str) -> Result<StartSpec, AssetErrors> {

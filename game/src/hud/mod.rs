@@ -196,6 +196,8 @@ pub struct Hud {
     pub menu: menu::State,
     /// Small notices, each with the seconds that it still stays.
     pub notices: Vec<(String, f32)>,
+    /// How much of the bodies' paths has been worked out, 0 … 1, while that goes on.
+    pub paths_ahead: Option<f32>,
     /// What is wrong with changed files, shown until they are mended.
     pub fault: Option<String>,
     /// A message that waits for a click.

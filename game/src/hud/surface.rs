@@ -5,6 +5,7 @@ use super::panels::area;
 use super::{Reply, Scene, format, style};
 use crate::command::{Action, Spot, Target};
 use crate::world::ship::Motion;
+use crate::world::ship::course::Course;
 use egui::{Align2, Color32, ColorImage, Painter, Pos2, Rect, RichText, Sense, Stroke, TextureHandle, TextureOptions, Vec2};
 use engine::orbit::BodyId;
 use engine::space::relative::narrow;
@@ -189,10 +190,12 @@ fn track(painter: &Painter, rect: Rect, scene: &Scene<'_>, id: BodyId) {
     let period = scene.readout.orbit.period_s;
     let seconds = if period.is_finite() { (1.5 * period).min(10.0 * 86_400.0) } else { 7_200.0 };
     let body = scene.world.system.body(id);
+    let mut course = Course::of(&scene.world.system, *coast.path.knot());
     let mut last: Option<Pos2> = None;
     for i in 0..=300_u32 {
         let t = scene.world.time.plus(ticks(seconds * f64::from(i) / 300.0));
-        let r = coast.arc.sample(t).position.0;
+        let Some(state) = course.at(t) else { break };
+        let r = state.position.0;
         if r.length() < body.radius_m {
             break;
         }

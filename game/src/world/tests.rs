@@ -1,5 +1,7 @@
 //! Tests of the World as a whole, on small made-up systems: coasting, warp, air, holds, hover, landing.
 
+mod coast;
+
 use super::readout::Situation;
 use super::ship::spec::ShipSpec;
 use super::ship::spec::tests::torch;
@@ -22,7 +24,7 @@ fn lone_body(gm: f64, radius_m: f64, day_s: f64, air: Option<Column>) -> Arc<Sys
     let spin = Spin { pole_dec_rad: [90.0 * DEG, 0.0], meridian_rad: [0.3, core::f64::consts::TAU * 86_400.0 / day_s], ..Spin::default() };
     let medium = Medium { bottom_radius_m: radius_m, top_altitude_m: 1e5, ground_albedo: Vec3::splat(0.1), layers: Vec::new() };
     let body = rock(gm, radius_m, spin, air.map(|column| Air { column, medium }));
-    Arc::new(System { key: "test".into(), name: "Test".into(), bodies: vec![body], ephemeris: Ephemeris::default(), hash: String::new(), eclipses: Default::default() })
+    Arc::new(System::new("test".into(), "Test".into(), vec![body], Ephemeris::default(), String::new()))
 }
 
 fn rock(gm: f64, radius_m: f64, spin: Spin, air: Option<Air>) -> Body {
@@ -35,6 +37,7 @@ fn rock(gm: f64, radius_m: f64, spin: Spin, air: Option<Air>) -> Body {
         soi_radius_m: f64::INFINITY,
         spin,
         shape: engine::orbit::eclipse::Shape::sphere(radius_m),
+        figure: None,
         albedo: Vec3::splat(0.1),
         intensity_cd: Vec3::ZERO,
         air,
@@ -55,7 +58,7 @@ fn planet_and_moon() -> Arc<System> {
     let orbit = |parent, gm_m3_s2, path| Orbit { parent, gm_m3_s2, path };
     let orbits = vec![orbit(None, planet, at_rest), orbit(Some(BodyId(0)), moon, EphemerisPath::FromParent { epoch: START, state })];
     let ephemeris = Ephemeris::new(orbits).unwrap();
-    Arc::new(System { key: "two".into(), name: "Two".into(), bodies, ephemeris, hash: String::new(), eclipses: Default::default() })
+    Arc::new(System::new("two".into(), "Two".into(), bodies, ephemeris, String::new()))
 }
 
 fn moon() -> Arc<System> {
@@ -169,7 +172,7 @@ fn a_flyby_changes_spheres_at_the_same_ticks_at_every_warp() {
         let velocity = DVec3::new(-s, c, 0.0) * (2.0 * 3.986_004_4e14 * (1.0 / r - 1.0 / 4.1e8)).sqrt();
         let state = State { position: Position::new(DVec3::new(c, s, 0.0) * r), velocity: Velocity::new(velocity) };
         world.ship.motion = Motion::Fly(Rigid { state, ..world.rigid() });
-        world.enter_arc();
+        world.enter_path();
         world.warp_asked = level;
         let mut spheres = vec![world.ship.body()];
         while world.time.ticks < end {

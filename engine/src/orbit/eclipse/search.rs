@@ -5,7 +5,7 @@
 //! Also here: roots of smooth functions of time.
 
 use super::{Cast, Paths, Shadow};
-use crate::orbit::events::Reach;
+use crate::orbit::field::Reach;
 use crate::time::Moment;
 use crate::units::SPEED_OF_LIGHT;
 

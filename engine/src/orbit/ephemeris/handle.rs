@@ -7,7 +7,7 @@ use super::orbit::{Details, EphemerisError, Orbit, check};
 use super::planets::Planets;
 use super::tree::{Pair, Tree};
 use crate::orbit::elements::Elements;
-use crate::orbit::events::Reach;
+use crate::orbit::field::Reach;
 use crate::orbit::kepler::Conic;
 use crate::orbit::{BodyId, State};
 use crate::space::{Icrf, Position, Velocity};
@@ -18,14 +18,14 @@ use std::sync::Arc;
 
 /// How far from the epoch a system is integrated where somebody asks, s.
 const REACH_S: f64 = 4.0 * JULIAN_CENTURY;
-/// A fit may be off by this part of the size of an orbit …
-const FIT: f64 = 1e-13;
+/// A fit may be off by this part of the size of an orbit (of a light moon's: the second) …
+const FIT: [f64; 2] = [1e-13, 1e-11];
 /// … and by this part of the distance from the barycentre, which is a few times what an f64 of it can tell.
 const FLOOR: f64 = 1e-15;
 /// Shortest revolutions that a chunk of light moons spans.
 const REVOLUTIONS: f64 = 32.0;
 /// Tides by other bodies on light moons count above this part of the planet's pull.
-const TIDE_COUNTS: f64 = 1e-11;
+const TIDE_COUNTS: f64 = 1e-10;
 
 /// Where every body of a system is, at any time. A handle: cheap to clone, shared between threads.
 #[derive(Clone, Debug, Default)]
@@ -134,8 +134,12 @@ impl System {
             .zip(&bodies)
             // The root moves little, by the pulls of all: it is held as well as the nearest body to it.
             .map(|((list, q), b)| {
-                let size = if *b == 0 { start.q[..bodies.len()].iter().skip(1).map(|p| (*p - *q).length()).fold(f64::INFINITY, f64::min) } else { size(list) };
-                FIT * if size.is_finite() { size } else { 1.0 } + FLOOR * q.length() + f64::MIN_POSITIVE
+                let size = if *b == 0 {
+                    start.q[..bodies.len()].iter().skip(1).map(|p| (*p - *q).length()).fold(f64::INFINITY, f64::min)
+                } else {
+                    size(list)
+                };
+                FIT[0] * if size.is_finite() { size } else { 1.0 } + FLOOR * q.length() + f64::MIN_POSITIVE
             })
             .collect();
         let (ticks, reach, halvings) = self.grid(&bodies, 1.0);
@@ -228,7 +232,7 @@ impl System {
             heard,
             others,
         };
-        let within_m = start.q.iter().map(|q| FIT * q.length() + f64::MIN_POSITIVE).collect();
+        let within_m = start.q.iter().map(|q| FIT[1] * q.length() + f64::MIN_POSITIVE).collect();
         Some(Level::new(Plan { bodies, ticks, reach, kind, epoch: self.tree.epoch, start, within_m, halvings }))
     }
 

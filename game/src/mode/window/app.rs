@@ -5,6 +5,7 @@ mod asked;
 mod drawing;
 mod watch;
 
+use super::ahead::Ahead;
 use super::canvas::Canvas;
 use super::clock::Clock;
 use super::flight::{self, Flight};
@@ -64,6 +65,8 @@ pub struct App {
     world: Option<Job<Begun>>,
     eclipses: Option<Job<Vec<Event>>>,
     flight: Option<Flight>,
+    /// The paths of the flight's bodies, being worked out.
+    ahead: Option<Ahead>,
     watch: watch::Watch,
     clicked: Vec<Action>,
     clock: Clock,
@@ -111,6 +114,7 @@ impl App {
             world: None,
             eclipses: None,
             flight: None,
+            ahead: None,
             watch: watch::Watch::default(),
             clicked: Vec::new(),
             clock: Clock::default(),
@@ -178,6 +182,7 @@ impl App {
         }
         self.hear_watch();
         self.hear_eclipses();
+        self.hud.paths_ahead = self.ahead.as_mut().and_then(Ahead::poll);
         self.set_focus();
         for control in self.input.take_view_controls() {
             self.control(control);

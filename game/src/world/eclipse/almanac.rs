@@ -7,7 +7,7 @@
 use crate::world::system::System;
 use core::f64::consts::TAU;
 use engine::orbit::eclipse::{self, Cast, Eclipse, Pace, Role};
-use engine::orbit::events::Reach;
+use engine::orbit::field::Reach;
 use engine::orbit::{BodyId, State};
 use engine::space::Icrf;
 use engine::time::{Moment, SimTime, TICKS_PER_SECOND};
