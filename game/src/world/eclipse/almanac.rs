@@ -190,7 +190,7 @@ fn window_ticks(system: &System, on: BodyId, by: BodyId) -> Option<i64> {
     cast(system, on, by)?;
     let reach = apart(system, on, by);
     let turn_s = TAU * reach.nearest_m / reach.fastest_m_s.max(1.0);
-    Some(((3.0 * turn_s).min(WINDOW_D * DAY).max(3600.0) * TICKS_PER_SECOND as f64) as i64)
+    Some(((3.0 * turn_s).clamp(3600.0, WINDOW_D * DAY) * TICKS_PER_SECOND as f64) as i64)
 }
 
 /// What an event is called: `Total eclipse: Moon before Sun`, `Partial eclipse: Moon in the shadow of Earth`.
