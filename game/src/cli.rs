@@ -3,6 +3,12 @@
 //! Every argument is checked here as far as it can be without opening a file; what it names is opened by the mode
 //! ([`crate::mode`]). Exit codes: 0 done, 1 an error, 2 wrong usage or no GPU, 3 a replay diverged.
 
+mod bench;
+mod eclipses;
+
+pub use bench::BenchOrbitArgs;
+pub use eclipses::ProbeEclipsesArgs;
+
 use clap::{Args, Parser, Subcommand};
 use engine::time::SimTime;
 use std::ffi::OsString;
@@ -344,61 +350,6 @@ pub struct ProbePropagateArgs {
     pub common: ProbeCommon,
 }
 
-/// Arguments of `probe eclipses`.
-#[derive(Clone, Debug, Args)]
-pub struct ProbeEclipsesArgs {
-    /// The body that the shadow falls on, by its folder's name
-    #[arg(long, value_name = "B")]
-    pub on: String,
-    /// The body that throws it
-    #[arg(long, value_name = "C")]
-    pub by: String,
-    /// Greatest not before this Julian date of TT
-    #[arg(long, value_name = "JD", allow_hyphen_values = true, value_parser = julian_date)]
-    pub from: f64,
-    /// Greatest not after this Julian date of TT
-    #[arg(long, value_name = "JD", allow_hyphen_values = true, value_parser = julian_date)]
-    pub to: f64,
-    /// Also tell what is seen from a place (geodetic latitude and east longitude, °); may be given several times
-    #[arg(long, value_name = "LAT,LON", allow_hyphen_values = true, value_parser = place)]
-    pub at: Vec<(f64, f64)>,
-    /// Also tell so many points of the central line
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=10_000))]
-    pub line: u16,
-    #[command(flatten)]
-    /// What all probes share.
-    pub common: ProbeCommon,
-}
-
-/// Arguments of `bench orbit`.
-#[derive(Clone, Debug, Args)]
-pub struct BenchOrbitArgs {
-    /// Write the rows here instead of stdout
-    #[arg(long, value_name = "F.json")]
-    pub json: Option<PathBuf>,
-    /// Draw error against CPU time and evaluations, a picture a case, into this folder
-    #[arg(long, value_name = "DIR")]
-    pub plot: Option<PathBuf>,
-    /// Rows of other programs, measured on this machine (tests/peers), to draw beside
-    #[arg(long, value_name = "F.json")]
-    pub peers: Option<PathBuf>,
-    /// Only these cases; several may be named, `NAME@T` ends at a reference time
-    #[arg(long, value_name = "NAME")]
-    pub case: Vec<String>,
-    /// Only these integrators
-    #[arg(long, value_name = "M")]
-    pub method: Vec<String>,
-    /// Evaluations of the force after which a method of fixed step is not refined further
-    #[arg(long, value_name = "N", default_value_t = 2_000_000, value_parser = clap::value_parser!(u64).range(1..))]
-    pub most: u64,
-    /// Stress the integrators instead: long spans, spikes of the step, scales, near collisions
-    #[arg(long)]
-    pub stress: bool,
-    #[command(flatten)]
-    /// Folders.
-    pub places: Places,
-}
-
 /// Parses the command line. On `--help` and on wrong usage the text is printed and the exit code given back.
 ///
 /// # Errors
@@ -428,14 +379,6 @@ fn julian_date(text: &str) -> Result<f64, String> {
         return Err("expected a Julian date of TDB within 100,000 years of J2000 (2451545.0)".to_owned());
     }
     Ok(jd)
-}
-
-/// `43.37,-8.40` → (43.37, −8.40).
-fn place(text: &str) -> Result<(f64, f64), String> {
-    let expected = || "expected LATITUDE,LONGITUDE in degrees, for example 43.37,-8.40".to_owned();
-    let (lat, lon) = text.split_once(',').ok_or_else(expected)?;
-    let number = |s: &str, most: f64| s.trim().parse::<f64>().ok().filter(|x| x.abs() <= most).ok_or_else(expected);
-    Ok((number(lat, 90.0)?, number(lon, 360.0)?))
 }
 
 /// A finite number.

@@ -1,8 +1,8 @@
 //! The system: which bodies exist, how big they are, how they turn, what covers them. Built from validated assets.
 
+use super::eclipse::almanac::Almanac;
 use super::ship::local::air_top_m;
 use super::ship::warp::floor_m;
-use super::eclipse::almanac::Almanac;
 use engine::air::Medium;
 use engine::air::density::Column;
 use engine::orbit::BodyId;
@@ -42,10 +42,10 @@ pub struct Body {
     pub soi_radius_m: f64,
     /// Pole and prime meridian.
     pub spin: Spin,
-    /// How its gravity differs from a point's; ships feel its zonal terms.
-    pub figure: Option<Figure>,
     /// Its shape where shadows are counted (the ground and the picture use the datum sphere).
     pub shape: Shape,
+    /// How its gravity differs from a point's; ships feel its zonal terms.
+    pub figure: Option<Figure>,
     /// Mean surface albedo, linear sRGB.
     pub albedo: Vec3,
     /// Luminous intensity, cd per linear sRGB channel; zero for all but stars.

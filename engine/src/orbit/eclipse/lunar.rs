@@ -14,11 +14,23 @@ fn angle(radius_m: f64, distance_m: f64) -> f64 {
     libm::asin((radius_m / distance_m.max(1.0)).clamp(-1.0, 1.0))
 }
 
+/// How wide the caster is towards the receiver, m. Where a rule enlarges its shadow (the Earth's), the rule has its oblateness in it;
+/// else it is the outline of its ellipsoid.
+fn width_m(cast: &Cast<'_>, shadow: &Shadow, t: Moment) -> f64 {
+    let shape = &cast.caster.shape;
+    if shape.flattening <= 0.0 || shape.shadow > 1.0 {
+        return shape.equatorial_m * shape.shadow;
+    }
+    let pole = cast.caster.spin.icrf_from_fixed_at(t).raw(DVec3::Z);
+    let slant = pole.dot(shadow.offset.normalize_or(pole.any_orthonormal_vector()));
+    let across = DVec3::new((1.0 - slant * slant).max(0.0).sqrt(), 0.0, slant);
+    shape.touching(across).dot(across)
+}
+
 /// Radii of penumbra and umbra, of the receiver, and its distance from the axis: rad, seen from the caster.
-fn angles(cast: &Cast<'_>, shadow: &Shadow) -> [f64; 4] {
+fn angles(cast: &Cast<'_>, shadow: &Shadow, t: Moment) -> [f64; 4] {
     let distance_m = libm::hypot(shadow.behind_m, shadow.miss_m());
-    let earth = &cast.caster.shape;
-    let width = angle(earth.equatorial_m * earth.shadow, distance_m) + angle(earth.equatorial_m, shadow.star_m);
+    let width = angle(width_m(cast, shadow, t), distance_m) + angle(cast.caster.shape.equatorial_m, shadow.star_m);
     let star = angle(cast.star.shape.limb_m[0], shadow.star_m);
     [width + star, width - star, angle(cast.receiver.shape.limb_m[0], distance_m), angle(shadow.miss_m(), distance_m)]
 }
@@ -26,7 +38,7 @@ fn angles(cast: &Cast<'_>, shadow: &Shadow) -> [f64; 4] {
 /// The eclipse whose axis passes closest at `greatest`; `None` where even the penumbra passes by.
 pub fn describe(cast: &Cast<'_>, paths: &Paths<'_>, greatest: Moment) -> Option<Eclipse> {
     let shadow = Shadow::at(cast, paths, greatest);
-    let [penumbra, umbra, radius, miss] = angles(cast, &shadow);
+    let [penumbra, umbra, radius, miss] = angles(cast, &shadow, greatest);
     if shadow.behind_m <= 0.0 || miss >= penumbra + radius {
         return None;
     }
@@ -35,7 +47,7 @@ pub fn describe(cast: &Cast<'_>, paths: &Paths<'_>, greatest: Moment) -> Option<
     let during = |limit: &dyn Fn([f64; 4]) -> f64| {
         span(
             &|t| {
-                let all = angles(cast, &Shadow::at(cast, paths, t));
+                let all = angles(cast, &Shadow::at(cast, paths, t), t);
                 all[3] - limit(all)
             },
             greatest,

@@ -19,19 +19,19 @@
 //! - [Espenak & Meeus 2009] "Five Millennium Canon of Lunar Eclipses", NASA TP-2009-214172: shadow by Danjon's rule.
 //! - [ESAE 1992] "Explanatory Supplement to the Astronomical Almanac", ch. 8: Besselian elements.
 
-pub mod shape;
 pub mod local;
 pub mod lunar;
 pub mod search;
 pub mod shadow;
+pub mod shape;
 pub mod solar;
 #[cfg(test)]
 mod tests;
 
-pub use shape::Shape;
 pub use local::Local;
 pub use search::Pace;
 pub use shadow::Shadow;
+pub use shape::Shape;
 
 use super::rotation::Spin;
 use super::{BodyId, State};

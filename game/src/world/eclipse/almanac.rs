@@ -86,11 +86,7 @@ fn apart(system: &System, a: BodyId, b: BodyId) -> Reach {
     };
     let (one, two) = (shell(&up_a, &up_b), shell(&up_b, &up_a));
     let touching = system.body(a).radius_m + system.body(b).radius_m;
-    Reach {
-        nearest_m: (one.0 - two.1).max(two.0 - one.1).max(touching),
-        farthest_m: one.1 + two.1,
-        fastest_m_s: one.2 + two.2,
-    }
+    Reach { nearest_m: (one.0 - two.1).max(two.0 - one.1).max(touching), farthest_m: one.1 + two.1, fastest_m_s: one.2 + two.2 }
 }
 
 fn pace(system: &System, cast: &Cast<'_>) -> Pace {
@@ -194,7 +190,7 @@ fn window_ticks(system: &System, on: BodyId, by: BodyId) -> Option<i64> {
     cast(system, on, by)?;
     let reach = apart(system, on, by);
     let turn_s = TAU * reach.nearest_m / reach.fastest_m_s.max(1.0);
-    Some(((3.0 * turn_s).min(WINDOW_D * DAY).max(3600.0) * TICKS_PER_SECOND as f64) as i64)
+    Some(((3.0 * turn_s).clamp(3600.0, WINDOW_D * DAY) * TICKS_PER_SECOND as f64) as i64)
 }
 
 /// What an event is called: `Total eclipse: Moon before Sun`, `Partial eclipse: Moon in the shadow of Earth`.
