@@ -40,6 +40,7 @@ pub fn readout() -> Readout {
             zenith: DVec3::Y,
             north: DVec3::new(-0.6, 0.0, -0.8),
             target: DVec3::ZERO,
+            node: DVec3::ZERO,
             sun: DVec3::new(0.3, 0.8, 0.2).normalize(),
         },
         density_kg_m3: 0.0,
@@ -58,6 +59,7 @@ pub fn readout() -> Readout {
         guidance: Guidance::Manual,
         guidance_phase: "",
         target: None,
+        node: None,
         sun_visible: 1.0,
         eclipsed_by: None,
         warnings: Vec::new(),
@@ -68,7 +70,7 @@ pub fn readout() -> Readout {
 /// Readouts with values that a display must survive.
 pub fn extremes() -> Vec<Readout> {
     use crate::command::{Spot, Target};
-    use crate::world::readout::{TargetReadout, Warning};
+    use crate::world::readout::{NodeReadout, TargetReadout, Warning};
     let mut escape = readout();
     escape.orbit = OrbitReadout {
         apoapsis_m: f64::INFINITY,
@@ -89,7 +91,8 @@ pub fn extremes() -> Vec<Readout> {
     });
     let broken = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, f64::MAX].map(|x| {
         let v = DVec3::splat(x);
-        let markers = Markers { prograde: v, surface_prograde: v, normal: v, radial_out: v, zenith: v, north: v, target: v, sun: v };
+        let markers =
+            Markers { prograde: v, surface_prograde: v, normal: v, radial_out: v, zenith: v, north: v, target: v, node: v, sun: v };
         Readout {
             altitude_m: x,
             ground_m: x,
@@ -118,6 +121,7 @@ pub fn extremes() -> Vec<Readout> {
             delta_v_m_s: x,
             sun_visible: x,
             last_contact: Some((x, 0)),
+            node: Some(NodeReadout { count: 3, to_node_s: x, to_burn_s: x, burn_s: x, dv_m_s: x, left_m_s: x }),
             target: Some(TargetReadout { distance_m: x, closing_m_s: x, ground_distance_m: Some(x), ..escape.target.unwrap() }),
             ..readout()
         }

@@ -131,6 +131,7 @@ pub(crate) mod tests {
             guidance: Guidance::Manual,
             guidance_phase: "",
             target: None,
+            node: None,
             sun_visible: 1.0,
             eclipsed_by: None,
             warnings: Vec::new(),

@@ -46,6 +46,8 @@ pub struct World {
     pub ship: Ship,
     /// What the pilot points at.
     pub target: Option<Target>,
+    /// The clock runs as fast as it may until shortly before this moment.
+    pub warp_to: Option<SimTime>,
 }
 
 /// How many ticks apart a flying ship asks whether another body dominates by now.
@@ -59,10 +61,15 @@ impl World {
             self.act(*action);
         }
         self.wake_ship(commands.axes);
+        let hurried = self.hurry();
         self.warp = self.warp_asked.min(self.warp_limit());
         let quarters = u32::from(self.quarters) + WARP_QUARTERS[usize::from(self.warp)];
         self.quarters = u8::try_from(quarters % 4).unwrap_or(0);
         self.advance(i64::from(quarters / 4), commands.axes);
+        if self.warp_asked < hurried {
+            // Something came up that the pilot should see.
+            self.warp_to = None;
+        }
     }
 
     /// Goes on in a system whose files were changed, if it has the same bodies; false, and nothing is changed, if not. The ship
@@ -103,11 +110,17 @@ impl World {
         let ship = &mut self.ship;
         match action {
             Action::Throttle(throttle) => ship.throttle = throttle,
-            Action::Hold(hold) => (ship.hold, ship.held) = (hold, None),
+            Action::Hold(hold) => {
+                (ship.hold, ship.held) = (hold, None);
+                if hold == Hold::Node {
+                    self.leave_arc();
+                }
+            }
             Action::Guidance(guidance) => {
                 ship.guidance = guidance;
                 ship.landing = None;
                 ship.held = None;
+                ship.burn = ship.burn.filter(|b| b.spent);
                 if guidance == Guidance::Manual {
                     ship.throttle = 0;
                 }
@@ -115,7 +128,7 @@ impl World {
             // Weight on the gear (or on the belly) locks it.
             Action::Gear(_) if contact::stands(ship) => {}
             Action::Gear(down) => ship.gear_down = down,
-            Action::Warp(level) => self.warp_asked = level.min(warp::TOP_LEVEL),
+            Action::Warp(level) => (self.warp_asked, self.warp_to) = (level.min(warp::TOP_LEVEL), None),
             Action::Target(target) => {
                 self.target = target.filter(|t| t.body.index() < self.system.bodies.len());
                 if ship.guidance == Guidance::Land {
@@ -128,6 +141,18 @@ impl World {
             Action::Refuel => ship.propellant_kg = ship.spec.mass.propellant_kg,
             // The session keeps and restores whole worlds; within one there is nothing to do.
             Action::Quicksave | Action::Quickload => {}
+            Action::AddNode(_) | Action::ChangeNode(..) | Action::DeleteNode(_) => {
+                ship.edit_nodes(action, self.time);
+                if ship.hold == Hold::Node || ship.guidance == Guidance::Node {
+                    self.leave_arc();
+                }
+            }
+            Action::WarpTo(to) => {
+                self.warp_to = to;
+                if to.is_none() {
+                    self.warp_asked = self.warp_asked.min(WARP_ONE);
+                }
+            }
         }
     }
 
@@ -139,8 +164,8 @@ impl World {
                 let held = match coast.attitude {
                     CoastAttitude::Inertial { rate, .. } => match self.ship.hold {
                         Hold::Free => true,
-                        Hold::Rate => rate == DVec3::ZERO,
-                        _ => self.ship.guidance == Guidance::Land && rate == DVec3::ZERO,
+                        Hold::Rate | Hold::Node => rate == DVec3::ZERO,
+                        _ => matches!(self.ship.guidance, Guidance::Land | Guidance::Node) && rate == DVec3::ZERO,
                     },
                     CoastAttitude::Held { hold, .. } => hold == self.ship.hold && self.ship.guidance == Guidance::Manual,
                 };
@@ -158,6 +183,16 @@ impl World {
         if let Motion::Coast(coast) = &self.ship.motion {
             self.ship.motion = Motion::Fly(self.coasting(coast, self.time));
         }
+    }
+
+    /// Sets the warp that a hurry to [`World::warp_to`] asks for now, and tells it; 0 without one.
+    fn hurry(&mut self) -> u8 {
+        let Some(to) = self.warp_to else { return 0 };
+        self.warp_asked = warp::hurried_level(to.ticks - self.time.ticks);
+        if self.warp_asked <= WARP_ONE {
+            self.warp_to = None;
+        }
+        self.warp_asked
     }
 
     /// The highest warp level that the ship's motion allows now.
@@ -243,7 +278,7 @@ impl World {
 
     /// The earlier of what the path brings and what the autopilot planned.
     fn planned(&self, wake: Wake) -> Wake {
-        match self.ship.landing.as_ref().and_then(ship::guidance::Landing::wake) {
+        match self.ship.planned_wake() {
             Some(at) if at <= wake.at => Wake { at: at.max(self.time), reason: Reason::Guidance },
             _ => wake,
         }

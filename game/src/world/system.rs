@@ -2,10 +2,12 @@
 
 use engine::air::Medium;
 use engine::air::density::Column;
-use engine::orbit::BodyId;
 use engine::orbit::ephemeris::Ephemeris;
 use engine::orbit::rotation::Spin;
+use engine::orbit::{BodyId, State, kepler};
+use engine::space::Centred;
 use engine::terrain::Relief;
+use engine::time::SimTime;
 use glam::Vec3;
 use std::sync::Arc;
 
@@ -67,6 +69,11 @@ impl System {
     pub fn body(&self, id: BodyId) -> &Body {
         &self.bodies[id.index()]
     }
+    /// Where a ship that coasts from a state about `host` at `from` will be: the body that dominates there, and the state about it.
+    pub fn ahead(&self, host: BodyId, state: &State<Centred>, from: SimTime, to: SimTime) -> (BodyId, State<Centred>) {
+        (host, kepler::propagate(self.body(host).gm_m3_s2, state, to.since(from)))
+    }
+
     /// The handle of a key.
     #[allow(clippy::cast_possible_truncation)]
     pub fn find(&self, key: &str) -> Option<BodyId> {

@@ -26,6 +26,8 @@ const _: () = assert!(WARP_QUARTERS.len() == TOP_LEVEL as usize + 1);
 pub const FLY_LEVEL: u8 = 4;
 /// An event is approached so that at least this many session ticks remain at any level.
 const APPROACH_TICKS: i64 = 3 * TICKS_PER_SECOND;
+/// The same where the pilot hurries to a moment.
+const HURRY_TICKS: i64 = TICKS_PER_SECOND / 3;
 /// How far ahead one search looks.
 const HORIZON_S: f64 = 30.0 * DAY;
 /// Steps after which a search rests at the tick that it has reached.
@@ -156,9 +158,19 @@ pub fn apsides(gm: f64, state: &State<Centred>) -> (f64, f64) {
 
 /// The highest level at which `ahead` ticks leave time to see what comes; at least 1×.
 pub fn level_before(ahead: i64) -> u8 {
+    level_with(ahead, APPROACH_TICKS)
+}
+
+/// The highest level at which `ahead` ticks are not jumped over when someone hurries there; at least 1×.
+pub fn hurried_level(ahead: i64) -> u8 {
+    level_with(ahead, HURRY_TICKS)
+}
+
+/// The highest level at which `ahead` ticks last for so many of the session; at least 1×.
+fn level_with(ahead: i64, session: i64) -> u8 {
     let mut level = WARP_ONE;
     while let Some(&quarters) = WARP_QUARTERS.get(usize::from(level) + 1) {
-        if i64::from(quarters) / 4 * APPROACH_TICKS > ahead {
+        if i64::from(quarters) / 4 * session > ahead {
             break;
         }
         level += 1;
