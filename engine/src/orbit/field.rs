@@ -7,13 +7,16 @@
 //! host alone, taken over all places that the bodies may be in: what counts is a pure function of that distance, the same at
 //! every warp, and no body is asked for its place in order to learn that it does not matter.
 //!
-//! Not here: the accelerations themselves ([`super::gravity`]), the path ([`super::arc`]).
+//! Far moons are one with their planet: a moon's GM acts from the planet's centre while what that moves the ship, a dipole that
+//! turns with the moon, stays below the same bound. So a ship between the planets feels Jupiter with its moons as one body,
+//! and its steps are not cut to theirs.
+//!
+//! Not here: the accelerations themselves ([`super::gravity`], [`super::path::recurrence`]), the path ([`super::path`]).
 //!
 //! - [Vallado 2013] "Fundamentals of Astrodynamics and Applications", 4th ed.
 //! - [Montenbruck & Gill 2000] "Satellite Orbits", §3.2 (zonal harmonics), §3.7 (relativity).
 
 use super::BodyId;
-use super::events::Reach;
 use crate::units::DAY;
 
 /// Speed of light, m/s (exact).
@@ -38,6 +41,17 @@ impl Bound {
     }
 }
 
+/// Where a child body can be, seen from its parent: the shell that its path stays in, and its greatest speed.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Reach {
+    /// Least distance from the parent, m.
+    pub nearest_m: f64,
+    /// Greatest distance from the parent, m.
+    pub farthest_m: f64,
+    /// Greatest speed relative to the parent, m/s.
+    pub fastest_m_s: f64,
+}
+
 /// A body as a source of gravity.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Source {
@@ -54,7 +68,7 @@ pub struct Source {
 }
 
 /// A body whose tide may count.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Perturber {
     /// Which.
     pub body: BodyId,
@@ -62,6 +76,16 @@ pub struct Perturber {
     pub gm_m3_s2: f64,
     /// Its tide counts from this distance (of the ship from the host) on, m.
     pub from_m: f64,
+    /// Its moons that act from its centre: up to which distance of the ship, m (beyond, they count by themselves), and their
+    /// GM, m³/s².
+    pub moons: Vec<(f64, f64)>,
+}
+
+impl Perturber {
+    /// GM of the body and of the moons that act from its centre while the ship is no farther than `highest_m`, m³/s².
+    pub fn gm_with_moons(&self, highest_m: f64) -> f64 {
+        self.moons.iter().filter(|m| m.0 > highest_m).fold(self.gm_m3_s2, |sum, m| sum + m.1)
+    }
 }
 
 /// What counts about one host, by distance from it.
@@ -96,15 +120,27 @@ impl Field {
     pub fn new(sources: &[Source], host: BodyId, bound: Bound) -> Self {
         let least = bound.least_m_s2();
         let source = sources.get(host.index()).copied().unwrap_or_default();
-        let mut perturbers: Vec<Perturber> = (0..sources.len())
-            .map(|i| BodyId(i as u16))
-            .filter(|&body| body != host)
-            .map(|body| {
-                let gm = sources[body.index()].gm_m3_s2;
-                Perturber { body, gm_m3_s2: gm, from_m: tide_counts_from(gm, nearest_m(sources, body, host), least) }
-            })
-            .filter(|p| p.from_m.is_finite())
-            .collect();
+        let ids = (0..sources.len()).map(|i| BodyId(i as u16)).filter(|&body| body != host);
+        let counts = |body: BodyId| tide_counts_from(sources[body.index()].gm_m3_s2, nearest_m(sources, body, host), least);
+        let mut perturbers = Vec::new();
+        let mut moons = Vec::new();
+        for body in ids {
+            let gm_m3_s2 = sources[body.index()].gm_m3_s2;
+            let mut from_m = counts(body);
+            let planet = sources[body.index()].parent.filter(|&p| !is_within(sources, host, p) && counts(p) <= from_m);
+            if let Some(planet) = planet {
+                from_m = from_m.max(apart_from(&sources[body.index()], nearest_m(sources, planet, host), bound));
+                moons.push((planet, (from_m, gm_m3_s2)));
+            }
+            if from_m.is_finite() {
+                perturbers.push(Perturber { body, gm_m3_s2, from_m, moons: Vec::new() });
+            }
+        }
+        for (planet, moon) in moons {
+            if let Some(p) = perturbers.iter_mut().find(|p| p.body == planet) {
+                p.moons.push(moon);
+            }
+        }
         perturbers.sort_by(|a, b| a.from_m.total_cmp(&b.from_m));
         let zonal_within_m = core::array::from_fn(|k| zonal_counts_within(&source, k, least));
         Self { host, source, perturbers, zonal_within_m, relativity_within_m: relativity_counts_within(source.gm_m3_s2, least) }
@@ -119,6 +155,35 @@ impl Field {
             relativity: lowest_m <= self.relativity_within_m,
         }
     }
+}
+
+/// True where `body` is `of` or moves about it.
+fn is_within(sources: &[Source], mut body: BodyId, of: BodyId) -> bool {
+    while body != of {
+        match sources.get(body.index()).and_then(|s| s.parent) {
+            Some(parent) => body = parent,
+            None => return false,
+        }
+    }
+    true
+}
+
+/// Distance of the ship from its host from which on a moon may not act from the centre of its planet, which never comes nearer
+/// than `nearest_m` to the host. With the moon at most a from the planet, turning at ω or faster, and d from the ship, the
+/// dipole 2 GM a/d³ leaves at most a velocity of that over ω; the mean place of an ellipse, 3/2 e a off, and the quadrupole
+/// 3 GM a²/d⁴ do not turn.
+fn apart_from(moon: &Source, nearest_m: f64, bound: Bound) -> f64 {
+    let least = bound.least_m_s2();
+    let Reach { nearest_m: low, farthest_m: a, fastest_m_s } = moon.reach;
+    if least <= 0.0 || a <= 0.0 {
+        return 0.0;
+    }
+    let slowest_rad_s = low * fastest_m_s / (a * a);
+    let eccentricity = (a - low) / (a + low);
+    let dipole = 2.0 * moon.gm_m3_s2 * a * bound.over_s / (slowest_rad_s.max(f64::MIN_POSITIVE) * bound.position_m);
+    let mean = 3.0 * moon.gm_m3_s2 * eccentricity * a / least;
+    let quadrupole = (3.0 * moon.gm_m3_s2 * a * a / least).sqrt().sqrt();
+    (nearest_m - libm::cbrt(dipole.max(mean)).max(quadrupole)).max(0.0)
 }
 
 /// A lower bound on the distance of two bodies, m, from the shells that their paths stay in.

@@ -1,8 +1,17 @@
-//! Gravity: accelerations by a point, by third bodies as tides, and by a flattened body's J₂. SI, f64, pure.
+//! Gravity: accelerations by a point, by third bodies as tides, by a body's figure, and relativity's part. SI, f64, pure.
+//!
+//! [`zonal`]: J₂ … J₄ and C₂₂; [`figure`]: a body's coefficients with its axes; [`relativity`]: 1PN of one mass or of n;
+//! [`response`]: the bulge that a moon raises; [`radiation`]: the pressure of sunlight.
 //!
 //! Not here: who attracts whom (`game::world`), nor how a state moves (`kepler`, `integrate`).
 //! - [Battin 1999] "An Introduction to the Mathematics and Methods of Astrodynamics", §8.4 (the f(q) form of a tide).
 //! - [Montenbruck & Gill 2000] "Satellite Orbits", §3.2 (zonal harmonics).
+
+pub mod figure;
+pub mod radiation;
+pub mod relativity;
+pub mod response;
+pub mod zonal;
 
 use crate::space::{Frame, Position, Vector};
 use glam::DVec3;

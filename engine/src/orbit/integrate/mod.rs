@@ -3,10 +3,16 @@
 //! A method is a record of coefficients and one loop. An adaptive one owns its buffers, takes its natural steps, and answers
 //! for any time inside the last step (dense output): whoever looks at a path samples it and never changes it.
 //! - [`runge_kutta`]: fixed tables, for powered flight at the tick.
+//! - [`gauss_radau`]: order 15, adaptive, with velocities: the all-rounder for close encounters and odd forces.
+//! - [`sums`]: additions and products that keep what rounding drops.
+//! - [`series`]: arithmetic of power series, the parts of every Taylor method.
 //!
 //! Not here: what attracts whom ([`super::gravity`]), closed forms ([`super::kepler`]).
 
+pub mod gauss_radau;
 pub mod runge_kutta;
+pub mod sums;
+pub mod series;
 
 use glam::DVec3;
 
@@ -39,4 +45,16 @@ pub struct Work {
     pub rejected: u64,
     /// Evaluations of the force on all points.
     pub evaluations: u64,
+}
+
+/// What became of one call for a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Step {
+    /// A step was made.
+    Made,
+    /// Nothing was left to do: the points are at the end already.
+    Arrived,
+    /// No step can be made from here: a singularity (two points at one place), or numbers that are not finite. The points are
+    /// as they were.
+    Stalled,
 }
