@@ -8,6 +8,7 @@ use super::reader::{ANY, POSITIVE, Reader};
 use super::relief::read_relief;
 use engine::orbit::State;
 use engine::orbit::ephemeris::{MeanOrbit, Path};
+use engine::orbit::gravity::figure::Figure;
 use engine::orbit::rotation::{Spin, Term};
 use engine::space::{Icrf, Position, Velocity};
 use engine::terrain::ReliefSpec;
@@ -41,6 +42,10 @@ pub struct BodySpec {
     pub intensity_cd: Vec3,
     /// Pole and meridian.
     pub spin: Spin,
+    /// How its gravity differs from a point's, with its axes.
+    pub figure: Option<Figure>,
+    /// GM with all its moons, also those without a folder, m³/s².
+    pub family_gm_m3_s2: Option<f64>,
     /// Where it is.
     pub path: Path,
     /// Its air.
@@ -70,6 +75,7 @@ pub fn read_body(key: &str, r: Reader<'_>) -> BodySpec {
         colour * engine::space::relative::narrow(lux * AU * AU)
     });
     let spin = r.table("rotation").map(read_spin).unwrap_or_default();
+    let gravity = r.maybe_table("gravity").map(|t| read_gravity(t, &spin, gm_m3_s2));
     let path = r.table("orbit").map_or_else(nowhere, read_path);
     let air = r.maybe_table("air").map(|t| read_air(t, gm_m3_s2, radius_m));
     let relief = r.maybe_table("relief").map(read_relief);
@@ -84,6 +90,8 @@ pub fn read_body(key: &str, r: Reader<'_>) -> BodySpec {
         radius_m,
         albedo,
         intensity_cd: star.unwrap_or(Vec3::ZERO),
+        family_gm_m3_s2: gravity.as_ref().and_then(|g| g.1),
+        figure: gravity.map(|g| g.0),
         spin,
         path,
         air,
@@ -114,6 +122,25 @@ fn read_spin(r: Reader<'_>) -> Spin {
     };
     r.finish();
     spin
+}
+
+/// The figure, and GM with all moons.
+fn read_gravity(r: Reader<'_>, spin: &Spin, gm_m3_s2: f64) -> (Figure, Option<f64>) {
+    // No body held together by its own gravity is flatter than J₂ = 1/2, a rod seen from its end.
+    const HARMONIC: core::ops::RangeInclusive<f64> = -0.5..=0.5;
+    let family = r.maybe_number("gm_with_moons_km3_s2", POSITIVE).map(|x| x * KM3_S2);
+    if family.is_some_and(|f| f < gm_m3_s2) {
+        r.wrong("gm_with_moons_km3_s2", "`gravity.gm_with_moons_km3_s2`: expected no less than `gm_km3_s2`");
+    }
+    let figure = Figure {
+        radius_m: r.number("reference_radius_km", POSITIVE) * KM,
+        zonal: [r.number("j2", HARMONIC), r.number("j3", HARMONIC), r.number("j4", HARMONIC)],
+        c22: r.maybe_number("c22", HARMONIC).unwrap_or(0.0),
+        tide: [r.maybe_number("tide_k2", 0.0..=1.5).unwrap_or(0.0), r.maybe_number("tide_lag_s", -1e5..=1e5).unwrap_or(0.0)],
+        spin: spin.clone(),
+    };
+    r.finish();
+    (figure, family)
 }
 
 fn read_path(r: Reader<'_>) -> Path {

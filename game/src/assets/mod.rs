@@ -2,7 +2,7 @@
 //!
 //! # Folders
 //! ```text
-//! assets/systems/<system>/system.toml         name, description
+//! assets/systems/<system>/system.toml         name, description, masses without a folder
 //! assets/systems/<system>/<body>/body.toml    one folder a body; its name is the body's key
 //! assets/maps/…                               maps that bodies name (also looked for beside the body's file)
 //! assets/ships/<ship>.toml                    ships
@@ -22,6 +22,7 @@
 //! | (top) | `name`, `parent` (key of the body it orbits; only the star has none), `gm_km3_s2`, `radius_km` (datum sphere: sea level), `albedo = [r, g, b]` (linear sRGB, 0 … 1) |
 //! | `[star]` | for the star only: `illuminance_at_1_au_lx` (Sun: 1.28e5), `colour = [r, g, b]` (linear sRGB, luminance 1) |
 //! | `[rotation]` | IAU form: `pole_ra_deg`, `pole_ra_deg_per_century`, `pole_dec_deg`, `pole_dec_deg_per_century`, `meridian_deg`, `meridian_deg_per_day`; *optional* `meridian_deg_per_century2` and lists of `[amplitude_deg, phase_deg, rate_deg_per_century]`: `pole_ra_terms` (sines), `pole_dec_terms` (cosines), `meridian_terms` (sines) |
+//! | `[gravity]` | *optional*, what makes it more than a point: `reference_radius_km`, `j2`, `j3`, `j4` (unnormalised); *optional* `c22`, `tide_k2` and `tide_lag_s` (the bulge that others raise on it), `gm_with_moons_km3_s2` (with moons that have no folder) |
 //! | `[orbit]` | `kind`, `epoch_jd_tdb`, and by kind: |
 //! | … `"barycentric"` | state from the system's barycentre: `position_km`, `velocity_km_s`, `with_moons` (true: of the body with its moons) |
 //! | … `"from_parent"` | the same from the parent's centre: `position_km`, `velocity_km_s` |
@@ -29,6 +30,12 @@
 //! | `[air.column]` | *optional*, what drags: `kind = "us76"` (Earth) or `"hydrostatic"`; `drag_top_m`; hydrostatic also `temperature_k`, `pressure_pa`, `molar_mass_kg_mol`, `heat_capacity_ratio`, *optional* `lapse = [{ to_altitude_m, k_per_m }]`. Gravity is the body's own |
 //! | `[air.medium]` | what one sees: `top_altitude_m`, `ground_albedo`, one to four `[[air.medium.layers]]` with `scattering_per_m`, `absorption_per_m` (at density 1), `profile` (`{ kind = "exponential", scale_height_m }` or `{ kind = "tent", bottom_m, peak_m, top_m }`), `phase` (`{ kind = "rayleigh" }` or `{ kind = "cornette_shanks", g }`) |
 //! | `[relief]` | *optional* (giants and stars have none): `relief_max` (exaggeration from afar, 1 = never), `ground` (`"rock"`, `"regolith"`, `"living"`, `"ice"`), `water`; *optional* files `map`, `coast`, `colour`; *optional* tables `[relief.noise]`, `[relief.craters]`, `[relief.provinces]`: see [`engine::terrain::spec`] |
+//!
+//! An orbit tells where a body starts: from the star's epoch on all bodies move each other (see [`engine::orbit::ephemeris`]).
+//!
+//! # `system.toml`
+//! `name`, *optional* `description`, and *optional* `[[masses]]`: what attracts and is no body one can go to (asteroids), each with
+//! `name`, `gm_km3_s2`, `position_km`, `velocity_km_s` from the barycentre at the epoch of the star.
 //!
 //! # Here
 //! [`system`], [`ship`] and [`start`] load; [`reader`] takes keys out of a [`tree`] and gathers [`fault`]s; [`overlay`] finds and reads

@@ -1,15 +1,18 @@
 //! A system from its folder: every body's file is read and checked, all faults are gathered, and only a system without any is built.
 
 use super::body::{BodySpec, read_body};
-use super::fault::{AssetErrors, At, Fault, nearest};
+use super::fault::{AssetErrors, Fault, nearest};
 use super::overlay::{Overlay, read_text};
-use super::reader::{Faults, Reader};
+use super::reader::{Faults, POSITIVE, Reader};
 use super::relief::load_maps;
 use super::tree::{Node, parse};
 use crate::world::system::{Air, Body, System};
 use engine::orbit::BodyId;
-use engine::orbit::ephemeris::{Ephemeris, Orbit, Path as OrbitPath};
+use engine::orbit::State;
+use engine::orbit::ephemeris::{Details, Ephemeris, EphemerisError, Mass, Orbit, Path as OrbitPath};
+use engine::space::{Position, Velocity};
 use engine::terrain::Relief;
+use engine::units::{KM, KM3_S2};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::path::PathBuf;
@@ -72,12 +75,13 @@ fn read(overlay: &Overlay, key: &str, faults: &Faults, hash: &mut blake3::Hasher
         }
         return None;
     }
-    let name = top.as_ref().map(|node| {
+    let top = top.as_ref().map(|node| {
         let r = Reader::new(node, faults);
         let name = r.text("name");
         r.maybe_text("description");
+        let masses: Vec<(String, Mass)> = r.tables("masses").into_iter().map(read_mass).collect();
         r.finish();
-        name
+        (name, masses)
     });
     let mut specs = Vec::new();
     let keys = overlay.names(&folder, None);
@@ -122,7 +126,20 @@ fn read(overlay: &Overlay, key: &str, faults: &Faults, hash: &mut blake3::Hasher
         return None;
     }
     let hash = hash.finalize().to_hex().to_string();
-    build(key, name?, specs, reliefs, hash).map_err(|f| faults.borrow_mut().push(f)).ok()
+    let (name, masses) = top?;
+    build(key, name, specs, masses, reliefs, hash).map_err(|f| faults.borrow_mut().push(f)).ok()
+}
+
+fn read_mass(r: Reader<'_>) -> (String, Mass) {
+    let name = r.text("name");
+    let gm_m3_s2 = r.number("gm_km3_s2", POSITIVE) * KM3_S2;
+    let vector = |key, range| DVec3::from_array(r.numbers::<3>(key, range)) * KM;
+    let state = State {
+        position: Position::new(vector("position_km", -1e12..=1e12)),
+        velocity: Velocity::new(vector("velocity_km_s", -3e5..=3e5)),
+    };
+    r.finish();
+    (name, Mass { gm_m3_s2, state })
 }
 
 /// The star first, then depth first: each body by its distance from its parent, its moons behind it. `None` where the tree
@@ -220,14 +237,40 @@ fn ground(spec: &BodySpec, overlay: &Overlay, folder: &str) -> Ground {
     }
 }
 
-fn build(key: &str, name: String, specs: Vec<BodySpec>, reliefs: Vec<Option<Arc<Relief>>>, hash: String) -> Result<System, Fault> {
+/// Where and how it is told that the bodies make no system.
+fn no_ephemeris(error: &EphemerisError, specs: &[BodySpec], masses: &[(String, Mass)]) -> Fault {
+    let name = |i: usize| specs.get(i).map_or_else(|| masses.get(i - specs.len()).map_or("", |m| m.0.as_str()), |s| s.name.as_str());
+    let (body, message) = match error {
+        EphemerisError::Same(a, b) => {
+            (*b, format!("{} and {} are at the same place: expected bodies apart, since their attraction has no value there", name(*a), name(*b)))
+        }
+        EphemerisError::Value { body, what } => (*body, format!("{}: {what}", name(*body))),
+        other => (0, other.to_string()),
+    };
+    match specs.get(body).or(specs.first()) {
+        Some(spec) => Fault::at(&spec.at, message),
+        None => Fault::file(&PathBuf::new(), message),
+    }
+}
+
+fn build(
+    key: &str,
+    name: String,
+    specs: Vec<BodySpec>,
+    masses: Vec<(String, Mass)>,
+    reliefs: Vec<Option<Arc<Relief>>>,
+    hash: String,
+) -> Result<System, Fault> {
     let ids = |key: &str| specs.iter().position(|s| s.key == key).and_then(|i| u16::try_from(i).ok()).map(BodyId);
     let parents: Vec<Option<BodyId>> = specs.iter().map(|s| s.parent.as_ref().and_then(|(p, _)| ids(p))).collect();
-    let orbits = specs.iter().zip(&parents).map(|(s, p)| Orbit { parent: *p, gm_m3_s2: s.gm_m3_s2, path: s.path.clone() });
-    let ephemeris = Ephemeris::new(orbits.collect()).map_err(|e| {
-        let at = specs.first().map(|s| s.at.clone());
-        Fault { path: at.as_ref().map_or_else(PathBuf::new, |a: &At| a.source.path.clone()), at, message: e.to_string(), help: None }
-    })?;
+    let orbits: Vec<Orbit> =
+        specs.iter().zip(&parents).map(|(s, p)| Orbit { parent: *p, gm_m3_s2: s.gm_m3_s2, path: s.path.clone() }).collect();
+    let details = Details {
+        figures: specs.iter().map(|s| s.figure.clone()).collect(),
+        family_gm_m3_s2: specs.iter().map(|s| s.family_gm_m3_s2).collect(),
+        masses: masses.iter().map(|m| m.1).collect(),
+    };
+    let ephemeris = Ephemeris::detailed(&orbits, &details).map_err(|e| no_ephemeris(&e, &specs, &masses))?;
     let soi = |i: usize| -> f64 {
         let Some(parent) = parents[i] else { return f64::INFINITY };
         let reach = ephemeris.reach(u16::try_from(i).map(BodyId).unwrap_or(BodyId(0)));
