@@ -1,0 +1,289 @@
+//! The path ahead for the map: predicted once and kept until something changes, at once where that is quick, on a thread where it
+//! is not, so that no frame waits for it.
+//!
+//! A kept prediction holds as long as the ship is where it says ([`Kept::holds`]); nothing is computed for a frame in which the
+//! ship only went on along its path. Not here: the prediction itself ([`engine::orbit::predict`]), its lines ([`super::lines`]).
+
+use crate::command::Node;
+use crate::world::World;
+use crate::world::ship::Motion;
+use crate::world::system::System;
+use engine::orbit::elements::Elements;
+use engine::orbit::path::{Knot, Model};
+use engine::orbit::predict::{Burn, Engine, Kind, Limits, Prediction, predict};
+use engine::orbit::{BodyId, State};
+use engine::space::{Centred, Vector};
+use engine::time::{Moment, SimTime};
+use engine::units::DAY;
+use std::sync::{Arc, mpsc};
+use std::time::Instant;
+
+/// A span that is predicted within the frame; longer ones may have to integrate the ephemeris first.
+const AT_ONCE_S: f64 = 3.0 * DAY;
+/// Steps that are taken within the frame.
+const STEPS_AT_ONCE: usize = 2_000;
+/// Steps of the longest prediction.
+const MOST_STEPS: usize = 60_000;
+/// Longest span of a prediction, s.
+const LONGEST_S: f64 = 40.0 * 365.25 * DAY;
+/// How far the ship may be from where it was predicted, m, and the same for its speed, m/s.
+const APART: (f64, f64) = (5.0, 5.0e-3);
+/// Part of a prediction's span after which it is made anew, so that the path does not end before the eye.
+const WORN: f64 = 0.15;
+
+/// What a prediction is made for.
+#[derive(Clone)]
+pub struct Ask {
+    system: Arc<System>,
+    model: Arc<Model>,
+    knot: Knot,
+    /// Planned burns, and how much of the first has still to be flown once it has been begun, m/s.
+    nodes: Vec<Node>,
+    to_gain: Option<glam::DVec3>,
+    /// Acceleration at full throttle now, m/s², and exhaust velocity, m/s.
+    engine: (f64, f64),
+    revolutions: u32,
+    target: Option<BodyId>,
+}
+
+/// A path without and with the planned burns.
+#[derive(Debug)]
+pub struct Course {
+    /// As it is.
+    pub free: Prediction,
+    /// With the burns, from the first on; none without burns.
+    pub planned: Option<Prediction>,
+    /// When the planned path leaves the other.
+    pub parts_at: Option<Moment>,
+    /// Where it begins and ends.
+    span: (Moment, Moment),
+    /// What it took, ms.
+    pub cost_ms: f64,
+}
+
+/// What was asked, without what moves on by itself.
+#[derive(Clone, Debug, PartialEq)]
+struct Question {
+    system: usize,
+    nodes: Vec<Node>,
+    spent: Option<[f64; 3]>,
+    revolutions: u32,
+    target: Option<BodyId>,
+}
+
+/// The predictions of a map.
+#[derive(Debug, Default)]
+pub struct Kept {
+    model: Option<(usize, Arc<Model>)>,
+    course: Option<(Question, Arc<Course>)>,
+    running: Option<(Question, mpsc::Receiver<Course>)>,
+    /// Courses made so far: lines follow when it changes.
+    pub made: u64,
+}
+
+impl Ask {
+    /// What the map asks of a World; none for a ship that rests.
+    fn new(world: &World, model: &Arc<Model>, revolutions: u32, target: Option<BodyId>) -> Option<Self> {
+        if matches!(world.ship.motion, Motion::Landed(_) | Motion::Crashed(_)) {
+            return None;
+        }
+        let rigid = world.rigid();
+        let ship = &world.ship;
+        let engine = (ship.spec.main_engine.thrust_n / ship.mass_kg(), ship.spec.main_engine.exhaust_velocity_m_s);
+        Some(Self {
+            system: world.system.clone(),
+            model: model.clone(),
+            knot: Knot::new(rigid.body, world.time, &rigid.state),
+            nodes: ship.nodes.clone(),
+            to_gain: ship.burn.filter(|b| b.spent).map(|b| b.to_gain),
+            engine,
+            revolutions,
+            target,
+        })
+    }
+
+    fn question(&self) -> Question {
+        Question {
+            system: Arc::as_ptr(&self.system) as usize,
+            nodes: self.nodes.clone(),
+            spent: self.to_gain.map(|v| v.to_array()),
+            revolutions: self.revolutions,
+            target: self.target,
+        }
+    }
+
+    /// The planned burns with the engine as it will be: lighter after each.
+    fn burns(&self) -> Vec<Burn> {
+        let (mut acceleration, exhaust) = self.engine;
+        let begun = usize::from(self.to_gain.is_some());
+        let later = self.nodes.iter().skip(begun);
+        let burn = later.map(|node| {
+            let parts = node.parts_m_s();
+            let engine = Some(Engine { acceleration_m_s2: acceleration, exhaust_m_s: exhaust });
+            acceleration *= libm::exp((parts.length() / exhaust).min(20.0));
+            Burn { at: node.at.into(), prograde_m_s: parts.x, normal_m_s: parts.y, radial_m_s: parts.z, engine }
+        });
+        burn.filter(|b| b.delta_v_m_s() > 0.0).collect()
+    }
+
+    /// The tick to which so many revolutions reach from a state: about its host where the path comes back there, else about what
+    /// the host goes about.
+    fn until(&self, host: BodyId, state: &State<Centred>, at: Moment) -> SimTime {
+        let body = self.system.body(host);
+        let own = Elements::from_state(body.gm_m3_s2, state);
+        let stays = own.is_bound() && own.apoapsis_m() < body.soi_radius_m;
+        let period_s = if stays {
+            own.period_s()
+        } else if let Some(parent) = body.parent {
+            let s = self.system.ephemeris.relative(host, parent, at.tick);
+            Elements::from_state(self.system.body(parent).gm_m3_s2, &s).period_s()
+        } else {
+            LONGEST_S
+        };
+        let span_s = (period_s * f64::from(self.revolutions)).clamp(60.0, LONGEST_S);
+        at.plus_s(span_s).next_tick().min(self.system.ephemeris.limits().1)
+    }
+
+    /// Predicts, with at most so many steps a path.
+    fn answer(&self, steps: usize) -> Course {
+        let begun = Instant::now();
+        let places = &self.system.ephemeris;
+        let limits = |until: SimTime| Limits { steps, target: self.target, ..Limits::until(until) };
+        let until = self.until(self.knot.host, &self.knot.state(), self.knot.at);
+        let free = predict(&self.model, places, self.knot, &[], &limits(until));
+        let burns = self.burns();
+        let (mut planned, mut parts_at) = (None, None);
+        let first = burns.iter().map(|b| b.ignition()).min_by(|a, b| a.since(*b).total_cmp(&0.0));
+        if let (None, Some(to_gain)) = (first, self.to_gain) {
+            let knot = self.knot.kicked(to_gain);
+            planned = Some(predict(&self.model, places, knot, &[], &limits(self.until(knot.host, &knot.state(), knot.at))));
+            parts_at = Some(self.knot.at);
+        } else if let Some(first) = first {
+            // From the step in which the first burn begins, or from where the other path ends.
+            let knot = match self.to_gain {
+                Some(to_gain) => self.knot.kicked(to_gain),
+                None => free.steps.iter().rev().map(|s| s.knot).find(|k| k.at.since(first) <= 0.0).unwrap_or(self.knot),
+            };
+            parts_at = Some(if self.to_gain.is_some() { self.knot.at } else { first });
+            // As far as the last burn, to learn how long a revolution is after it.
+            let last = burns.iter().fold(knot.at, |t, b| {
+                let end = b.ignition().plus_s(b.duration_s() + 1.0);
+                if end.since(t) > 0.0 { end } else { t }
+            });
+            let to_last = predict(&self.model, places, knot, &burns, &limits(last.next_tick()));
+            let after = to_last.state(to_last.end());
+            let until = after.map_or(until, |(host, state)| self.until(host, &state, to_last.end())).max(until);
+            planned = Some(predict(&self.model, places, knot, &burns, &limits(until)));
+        }
+        let end = if free.end().since(self.knot.at) > 0.0 { free.end() } else { self.knot.at };
+        Course { free, planned, parts_at, span: (self.knot.at, end), cost_ms: begun.elapsed().as_secs_f64() * 1e3 }
+    }
+}
+
+impl Course {
+    /// The planned path where there is one, else the other.
+    pub fn last(&self) -> &Prediction {
+        self.planned.as_ref().unwrap_or(&self.free)
+    }
+
+    /// The body and the state about it at a moment of the path with all burns; none beyond it.
+    pub fn state(&self, at: Moment) -> Option<(BodyId, State<Centred>)> {
+        let planned = self.planned.as_ref().filter(|_| self.parts_at.is_some_and(|p| at.since(p) >= 0.0));
+        planned.and_then(|p| p.state(at)).or_else(|| self.free.state(at))
+    }
+
+    /// The next moment after `now` at which something happens on the path with all burns.
+    pub fn next(&self, now: SimTime, is: impl Fn(Kind) -> bool) -> Option<Moment> {
+        let ahead = |p: &Prediction| p.marks.iter().find(|m| is(m.kind) && m.at.since(now.into()) > 0.0).map(|m| m.at);
+        ahead(self.last()).or_else(|| ahead(&self.free))
+    }
+
+    /// True where the ship of a World is where the path says, and enough of it is left.
+    fn holds(&self, world: &World) -> bool {
+        let now = Moment::from(world.time);
+        let rigid = world.rigid();
+        let worn = now.since(self.span.0) > WORN * self.span.1.since(self.span.0);
+        let there = self.free.state(now).is_some_and(|(host, s)| {
+            let apart: Vector<Centred> = s.position - rigid.state.position;
+            host == rigid.body
+                && apart.0.length() < APART.0 + 1e-9 * rigid.state.position.length()
+                && (s.velocity - rigid.state.velocity).0.length() < APART.1
+        });
+        there && !worn
+    }
+}
+
+impl Kept {
+    /// The course of a World's ship, as far as it is known now. `ctx` is told when a thread has more.
+    pub fn course(&mut self, ctx: &egui::Context, world: &World, revolutions: u32, target: Option<BodyId>) -> Option<Arc<Course>> {
+        let model = self.model(world);
+        let Some(ask) = Ask::new(world, &model, revolutions, target) else {
+            self.course = None;
+            return None;
+        };
+        let question = ask.question();
+        self.hear();
+        let fresh = self.course.as_ref().is_some_and(|(q, c)| *q == question && c.holds(world));
+        if !fresh {
+            self.make(ctx, ask, question);
+        }
+        self.course.as_ref().map(|(_, c)| c.clone())
+    }
+
+    /// What the World's system is to a path.
+    pub fn model(&mut self, world: &World) -> Arc<Model> {
+        let id = Arc::as_ptr(&world.system) as usize;
+        match &self.model {
+            Some((of, model)) if *of == id => model.clone(),
+            _ => {
+                let model = Arc::new(world.system.model());
+                self.model = Some((id, model.clone()));
+                model
+            }
+        }
+    }
+
+    /// Takes over what a thread has made.
+    fn hear(&mut self) {
+        match self.running.as_ref().map(|(_, r)| r.try_recv()) {
+            Some(Ok(course)) => {
+                if let Some((question, _)) = self.running.take() {
+                    self.keep(question, course);
+                }
+            }
+            Some(Err(mpsc::TryRecvError::Disconnected)) => self.running = None,
+            Some(Err(mpsc::TryRecvError::Empty)) | None => {}
+        }
+    }
+
+    fn keep(&mut self, question: Question, course: Course) {
+        tracing::debug!("path ahead: {:.1} ms, {} steps", course.cost_ms, course.free.steps.len());
+        self.course = Some((question, Arc::new(course)));
+        self.made += 1;
+    }
+
+    fn make(&mut self, ctx: &egui::Context, ask: Ask, question: Question) {
+        let until = ask.until(ask.knot.host, &ask.knot.state(), ask.knot.at);
+        let last_node = ask.nodes.last().map_or(until, |n| n.at).max(until);
+        if Moment::from(last_node).since(ask.knot.at) < AT_ONCE_S {
+            let course = ask.answer(STEPS_AT_ONCE);
+            let whole = |p: &Prediction| p.ending != engine::orbit::predict::Ending::Steps;
+            let complete = whole(&course.free) && course.planned.as_ref().is_none_or(whole);
+            self.keep(question.clone(), course);
+            if complete {
+                return;
+            }
+        }
+        // One at a time: what changed meanwhile is asked for when it is done.
+        if self.running.is_none() {
+            let (tell, told) = mpsc::channel();
+            let ctx = ctx.clone();
+            self.running = Some((question, told));
+            std::thread::spawn(move || {
+                // Nobody may be listening any more.
+                _ = tell.send(ask.answer(MOST_STEPS));
+                ctx.request_repaint();
+            });
+        }
+    }
+}
