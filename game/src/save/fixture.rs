@@ -25,6 +25,7 @@ fn body(key: &str, parent: Option<BodyId>, gm_m3_s2: f64, radius_m: f64) -> Body
         radius_m,
         soi_radius_m: if parent.is_some() { 9.0e8 } else { f64::INFINITY },
         spin: engine::orbit::rotation::Spin { pole_dec_rad: [1.4, 0.0], meridian_rad: [0.3, 6.3], ..Default::default() },
+        figure: None,
         albedo: Vec3::splat(0.3),
         intensity_cd: Vec3::ZERO,
         air: None,
@@ -36,7 +37,7 @@ fn body(key: &str, parent: Option<BodyId>, gm_m3_s2: f64, radius_m: f64) -> Body
 /// A star and `rock`, of the Earth's mass and size but bare.
 pub(crate) fn system() -> Arc<System> {
     let bodies = vec![body("star", None, 1.327e20, 7.0e8), body("rock", Some(BodyId(0)), 3.986e14, 6371.0 * KM)];
-    Arc::new(System { key: "two".into(), name: "Two".into(), bodies, ephemeris: Default::default(), hash: "ab".repeat(32) })
+    Arc::new(System::new("two".into(), "Two".into(), bodies, Default::default(), "ab".repeat(32)))
 }
 
 /// About the rock, 400 km up, turning a little.

@@ -1,8 +1,13 @@
 //! The system: which bodies exist, how big they are, how they turn, what covers them. Built from validated assets.
 
+use super::ship::local::air_top_m;
+use super::ship::warp::floor_m;
 use engine::air::Medium;
 use engine::air::density::Column;
 use engine::orbit::ephemeris::Ephemeris;
+use engine::orbit::field::{Bound, Source};
+use engine::orbit::gravity::figure::Figure;
+use engine::orbit::path::{self, Model};
 use engine::orbit::rotation::Spin;
 use engine::orbit::{BodyId, State, kepler};
 use engine::space::Centred;
@@ -37,6 +42,8 @@ pub struct Body {
     pub soi_radius_m: f64,
     /// Pole and prime meridian.
     pub spin: Spin,
+    /// How its gravity differs from a point's; ships feel its zonal terms.
+    pub figure: Option<Figure>,
     /// Mean surface albedo, linear sRGB.
     pub albedo: Vec3,
     /// Luminous intensity, cd per linear sRGB channel; zero for all but stars.
@@ -60,11 +67,31 @@ pub struct System {
     pub bodies: Vec<Body>,
     /// Where they are.
     pub ephemeris: Ephemeris,
+    /// How they attract a ship, and where one changes from one to the other.
+    pub gravity: Model,
     /// blake3 of the asset files that the World depends on, hex; a replay refuses others.
     pub hash: String,
 }
 
 impl System {
+    /// A system of these bodies (in the order of the ephemeris).
+    #[allow(clippy::cast_possible_truncation)]
+    pub fn new(key: String, name: String, bodies: Vec<Body>, ephemeris: Ephemeris, hash: String) -> Self {
+        let as_met = |(i, b): (usize, &Body)| {
+            let (reference_radius_m, zonal) = b.figure.as_ref().map_or((0.0, [0.0; 3]), |f| (f.radius_m, f.zonal));
+            let reach = ephemeris.reach(BodyId(i as u16));
+            path::Body {
+                source: Source { parent: b.parent, reach, gm_m3_s2: b.gm_m3_s2, reference_radius_m, zonal },
+                spin: b.spin.clone(),
+                soi_m: b.soi_radius_m,
+                low_m: b.radius_m + floor_m(b),
+                radius_m: b.radius_m,
+                air_top_m: if b.air.is_some() { b.radius_m + air_top_m(b) } else { 0.0 },
+            }
+        };
+        let gravity = Model::new(bodies.iter().enumerate().map(as_met).collect(), Bound::COAST);
+        Self { key, name, bodies, ephemeris, gravity, hash }
+    }
     /// The body behind a handle.
     pub fn body(&self, id: BodyId) -> &Body {
         &self.bodies[id.index()]

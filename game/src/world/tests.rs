@@ -22,7 +22,7 @@ fn lone_body(gm: f64, radius_m: f64, day_s: f64, air: Option<Column>) -> Arc<Sys
     let spin = Spin { pole_dec_rad: [90.0 * DEG, 0.0], meridian_rad: [0.3, core::f64::consts::TAU * 86_400.0 / day_s], ..Spin::default() };
     let medium = Medium { bottom_radius_m: radius_m, top_altitude_m: 1e5, ground_albedo: Vec3::splat(0.1), layers: Vec::new() };
     let body = rock(gm, radius_m, spin, air.map(|column| Air { column, medium }));
-    Arc::new(System { key: "test".into(), name: "Test".into(), bodies: vec![body], ephemeris: Ephemeris::default(), hash: String::new() })
+    Arc::new(System::new("test".into(), "Test".into(), vec![body], Ephemeris::default(), String::new()))
 }
 
 fn rock(gm: f64, radius_m: f64, spin: Spin, air: Option<Air>) -> Body {
@@ -34,6 +34,7 @@ fn rock(gm: f64, radius_m: f64, spin: Spin, air: Option<Air>) -> Body {
         radius_m,
         soi_radius_m: f64::INFINITY,
         spin,
+        figure: None,
         albedo: Vec3::splat(0.1),
         intensity_cd: Vec3::ZERO,
         air,
@@ -54,7 +55,7 @@ fn planet_and_moon() -> Arc<System> {
     let orbit = |parent, gm_m3_s2, path| Orbit { parent, gm_m3_s2, path };
     let orbits = vec![orbit(None, planet, at_rest), orbit(Some(BodyId(0)), moon, EphemerisPath::FromParent { epoch: START, state })];
     let ephemeris = Ephemeris::new(orbits).unwrap();
-    Arc::new(System { key: "two".into(), name: "Two".into(), bodies, ephemeris, hash: String::new() })
+    Arc::new(System::new("two".into(), "Two".into(), bodies, ephemeris, String::new()))
 }
 
 fn moon() -> Arc<System> {

@@ -9,7 +9,7 @@ use crate::world::World;
 use crate::world::ship::Motion;
 use crate::world::system::System;
 use engine::orbit::elements::Elements;
-use engine::orbit::path::{Knot, Model};
+use engine::orbit::path::Knot;
 use engine::orbit::predict::{Burn, Engine, Kind, Limits, Prediction, predict};
 use engine::orbit::{BodyId, State};
 use engine::space::{Centred, Vector};
@@ -35,7 +35,6 @@ const WORN: f64 = 0.15;
 #[derive(Clone)]
 pub struct Ask {
     system: Arc<System>,
-    model: Arc<Model>,
     knot: Knot,
     /// Planned burns, and how much of the first has still to be flown once it has been begun, m/s.
     nodes: Vec<Node>,
@@ -74,7 +73,6 @@ struct Question {
 /// The predictions of a map.
 #[derive(Debug, Default)]
 pub struct Kept {
-    model: Option<(usize, Arc<Model>)>,
     course: Option<(Question, Arc<Course>)>,
     running: Option<(Question, mpsc::Receiver<Course>)>,
     /// Courses made so far: lines follow when it changes.
@@ -83,7 +81,7 @@ pub struct Kept {
 
 impl Ask {
     /// What the map asks of a World; none for a ship that rests.
-    fn new(world: &World, model: &Arc<Model>, revolutions: u32, target: Option<BodyId>) -> Option<Self> {
+    fn new(world: &World, revolutions: u32, target: Option<BodyId>) -> Option<Self> {
         if matches!(world.ship.motion, Motion::Landed(_) | Motion::Crashed(_)) {
             return None;
         }
@@ -92,7 +90,6 @@ impl Ask {
         let engine = (ship.spec.main_engine.thrust_n / ship.mass_kg(), ship.spec.main_engine.exhaust_velocity_m_s);
         Some(Self {
             system: world.system.clone(),
-            model: model.clone(),
             knot: Knot::new(rigid.body, world.time, &rigid.state),
             nodes: ship.nodes.clone(),
             to_gain: ship.burn.filter(|b| b.spent).map(|b| b.to_gain),
@@ -150,13 +147,13 @@ impl Ask {
         let places = &self.system.ephemeris;
         let limits = |until: SimTime| Limits { steps, target: self.target, ..Limits::until(until) };
         let until = self.until(self.knot.host, &self.knot.state(), self.knot.at);
-        let free = predict(&self.model, places, self.knot, &[], &limits(until));
+        let free = predict(&self.system.gravity, places, self.knot, &[], &limits(until));
         let burns = self.burns();
         let (mut planned, mut parts_at) = (None, None);
         let first = burns.iter().map(|b| b.ignition()).min_by(|a, b| a.since(*b).total_cmp(&0.0));
         if let (None, Some(to_gain)) = (first, self.to_gain) {
             let knot = self.knot.kicked(to_gain);
-            planned = Some(predict(&self.model, places, knot, &[], &limits(self.until(knot.host, &knot.state(), knot.at))));
+            planned = Some(predict(&self.system.gravity, places, knot, &[], &limits(self.until(knot.host, &knot.state(), knot.at))));
             parts_at = Some(self.knot.at);
         } else if let Some(first) = first {
             // From the step in which the first burn begins, or from where the other path ends.
@@ -170,10 +167,10 @@ impl Ask {
                 let end = b.ignition().plus_s(b.duration_s() + 1.0);
                 if end.since(t) > 0.0 { end } else { t }
             });
-            let to_last = predict(&self.model, places, knot, &burns, &limits(last.next_tick()));
+            let to_last = predict(&self.system.gravity, places, knot, &burns, &limits(last.next_tick()));
             let after = to_last.state(to_last.end());
             let until = after.map_or(until, |(host, state)| self.until(host, &state, to_last.end())).max(until);
-            planned = Some(predict(&self.model, places, knot, &burns, &limits(until)));
+            planned = Some(predict(&self.system.gravity, places, knot, &burns, &limits(until)));
         }
         let end = if free.end().since(self.knot.at) > 0.0 { free.end() } else { self.knot.at };
         Course { free, planned, parts_at, span: (self.knot.at, end), cost_ms: begun.elapsed().as_secs_f64() * 1e3 }
@@ -216,8 +213,7 @@ impl Course {
 impl Kept {
     /// The course of a World's ship, as far as it is known now. `ctx` is told when a thread has more.
     pub fn course(&mut self, ctx: &egui::Context, world: &World, revolutions: u32, target: Option<BodyId>) -> Option<Arc<Course>> {
-        let model = self.model(world);
-        let Some(ask) = Ask::new(world, &model, revolutions, target) else {
+        let Some(ask) = Ask::new(world, revolutions, target) else {
             self.course = None;
             return None;
         };
@@ -228,19 +224,6 @@ impl Kept {
             self.make(ctx, ask, question);
         }
         self.course.as_ref().map(|(_, c)| c.clone())
-    }
-
-    /// What the World's system is to a path.
-    pub fn model(&mut self, world: &World) -> Arc<Model> {
-        let id = Arc::as_ptr(&world.system) as usize;
-        match &self.model {
-            Some((of, model)) if *of == id => model.clone(),
-            _ => {
-                let model = Arc::new(world.system.model());
-                self.model = Some((id, model.clone()));
-                model
-            }
-        }
     }
 
     /// Takes over what a thread has made.

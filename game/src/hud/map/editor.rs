@@ -220,14 +220,16 @@ fn buttons(ui: &mut Ui, scene: &Scene<'_>, view: &mut MapView, i: usize, node: &
         ui.spacing_mut().item_spacing.x = 4.0;
         let first = i == 0;
         ui.add_enabled_ui(first, |ui| {
-            if style::toggle(ui, r.guidance == Guidance::Node, "Fly it").on_hover_text("The autopilot turns, burns and cuts off").clicked() {
+            if style::toggle(ui, r.guidance == Guidance::Node, "Fly it").on_hover_text("The autopilot turns, burns and cuts off").clicked()
+            {
                 reply.actions.push(Action::Guidance(if r.guidance == Guidance::Node { Guidance::Manual } else { Guidance::Node }));
             }
             if style::toggle(ui, r.hold == Hold::Node, "Point").on_hover_text("Hold the nose along the burn").clicked() {
                 reply.actions.push(Action::Hold(if r.hold == Hold::Node { Hold::Rate } else { Hold::Node }));
             }
         });
-        if style::toggle(ui, world.warp_to.is_some(), "Warp there").on_hover_text("Runs the clock until a minute before the burn").clicked() {
+        if style::toggle(ui, world.warp_to.is_some(), "Warp there").on_hover_text("Runs the clock until a minute before the burn").clicked()
+        {
             reply.actions.push(Action::WarpTo(if world.warp_to.is_some() { None } else { Some(before(world, node)) }));
         }
         if style::toggle(ui, false, "Delete").clicked() {

@@ -14,7 +14,15 @@ use engine::orbit::predict::View;
 const WIDTH: f32 = 210.0;
 
 /// The legend.
-pub fn show(ctx: &egui::Context, scene: &Scene<'_>, view: &mut MapView, focus: BodyId, course: Option<&Course>, opacity: f32, reply: &mut Reply) {
+pub fn show(
+    ctx: &egui::Context,
+    scene: &Scene<'_>,
+    view: &mut MapView,
+    focus: BodyId,
+    course: Option<&Course>,
+    opacity: f32,
+    reply: &mut Reply,
+) {
     let o = &scene.readout.orbit;
     area(ctx, "map legend", Align2::LEFT_TOP, [12.0, 12.0], |ui| {
         style::panel(opacity).show(ui, |ui| {
@@ -52,7 +60,9 @@ pub fn show(ctx: &egui::Context, scene: &Scene<'_>, view: &mut MapView, focus: B
             ui.label(style::heading("Path ahead"));
             ahead(ui, view, course);
             frame(ui, scene, view);
-            ui.label(style::note("drag: turn · right drag: pan · wheel: zoom\nclick: target · double click: look there\nclick the path: plan a burn"));
+            ui.label(style::note(
+                "drag: turn · right drag: pan · wheel: zoom\nclick: target · double click: look there\nclick the path: plan a burn",
+            ));
         });
     });
 }
@@ -69,7 +79,9 @@ fn ahead(ui: &mut Ui, view: &mut MapView, course: Option<&Course>) {
             view.revolutions = (view.revolutions + 1).min(REVOLUTIONS.len() - 1);
         }
         match course {
-            Some(course) => ui.label(RichText::new(format!("{} ms", format::number(course.cost_ms, 1))).font(style::mono(11.0)).color(style::DIM)),
+            Some(course) => {
+                ui.label(RichText::new(format!("{} ms", format::number(course.cost_ms, 1))).font(style::mono(11.0)).color(style::DIM))
+            }
             None => ui.label(style::note("none")),
         };
     });

@@ -4,7 +4,6 @@
 use super::course::Course;
 use crate::world::system::System;
 use engine::orbit::BodyId;
-use engine::orbit::path::Model;
 use engine::orbit::predict::{Mark, Prediction, View, view::Point};
 use engine::time::Moment;
 use glam::DVec3;
@@ -72,16 +71,16 @@ pub struct Lines {
 
 impl Lines {
     /// The lines of a course. `host` is the body that dominates now.
-    pub fn new(system: &System, model: &Model, course: &Course, frame: Frame, host: BodyId) -> Self {
+    pub fn new(system: &System, course: &Course, frame: Frame, host: BodyId) -> Self {
         let mut all = Self::default();
-        all.add(system, model, &course.free, frame, host, None);
+        all.add(system, &course.free, frame, host, None);
         if let Some(planned) = &course.planned {
-            all.add(system, model, planned, frame, host, course.parts_at);
+            all.add(system, planned, frame, host, course.parts_at);
         }
         all
     }
 
-    fn add(&mut self, system: &System, model: &Model, path: &Prediction, frame: Frame, host: BodyId, from: Option<Moment>) {
+    fn add(&mut self, system: &System, path: &Prediction, frame: Frame, host: BodyId, from: Option<Moment>) {
         let places = &system.ephemeris;
         let planned = from.is_some();
         let ahead = |at: Moment| from.is_none_or(|f| at.since(f) > -1e-3);
@@ -96,7 +95,7 @@ impl Lines {
             Frame::Patched => hosts.iter().map(|h| (View { body: *h, rotating: false }, Some(*h))).collect(),
         };
         for (view, only) in views {
-            for piece in path.polylines(model, places, view, BEND_RAD) {
+            for piece in path.polylines(&system.gravity, places, view, BEND_RAD) {
                 if only.is_some_and(|h| h != piece.host) {
                     continue;
                 }
@@ -112,17 +111,17 @@ impl Lines {
         }
         for mark in path.marks.iter().filter(|m| ahead(m.at)) {
             let spot = Spot { host: mark.host, at: mark.at, from_host: mark.state.position.0, planned };
-            let (anchor, position) = self.locate(system, model, frame, host, spot);
+            let (anchor, position) = self.locate(system, frame, host, spot);
             self.flags.push(Flag { mark: *mark, anchor, position, planned });
         }
     }
 
     /// Where a place on the path is drawn.
-    pub fn locate(&self, system: &System, model: &Model, frame: Frame, ship_host: BodyId, spot: Spot) -> (Anchor, DVec3) {
+    pub fn locate(&self, system: &System, frame: Frame, ship_host: BodyId, spot: Spot) -> (Anchor, DVec3) {
         match frame {
             Frame::Of(view) => {
                 let anchor = Anchor { body: view.body, base: DVec3::ZERO, turning: view.rotating };
-                (anchor, view.place(model, &system.ephemeris, spot.host, spot.at, spot.from_host))
+                (anchor, view.place(&system.gravity, &system.ephemeris, spot.host, spot.at, spot.from_host))
             }
             Frame::Patched => {
                 // Of the part that it lies on.

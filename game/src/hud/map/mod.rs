@@ -210,7 +210,7 @@ impl MapView {
         match &self.lines {
             Some((made, frame, of, lines)) if (*made, *frame, *of) == (self.kept.made, self.frame, host) => lines.clone(),
             _ => {
-                let lines = Arc::new(Lines::new(&world.system, &self.kept.model(world), course, self.frame, host));
+                let lines = Arc::new(Lines::new(&world.system, course, self.frame, host));
                 self.lines = Some((self.kept.made, self.frame, host, lines.clone()));
                 lines
             }

@@ -36,14 +36,13 @@ struct Stand {
     axes: [Vec2; 3],
 }
 
-fn stand(chart: &Chart<'_, '_>, view: &mut MapView, course: &Course, lines: &Lines, node: &Node) -> Option<Stand> {
+fn stand(chart: &Chart<'_, '_>, view: &MapView, course: &Course, lines: &Lines, node: &Node) -> Option<Stand> {
     let at = Moment::from(node.at);
     let (host, state) = course.state(at)?;
     let planned = course.parts_at.is_some_and(|p| at.since(p) >= 0.0);
-    let model = view.kept.model(chart.world);
     let ship_host = chart.world.ship.body();
-    let mut put = |from_host: DVec3| {
-        let (anchor, p) = lines.locate(&chart.world.system, &model, view.frame, ship_host, Spot { host, at, from_host, planned });
+    let put = |from_host: DVec3| {
+        let (anchor, p) = lines.locate(&chart.world.system, view.frame, ship_host, Spot { host, at, from_host, planned });
         chart.place(&anchor, p)
     };
     let middle = put(state.position.0);
@@ -78,7 +77,7 @@ pub fn show(
         if chosen {
             busy |= handles(ui, chart, view, (i, node), &stand, reply);
         }
-        let response = ui.interact(Rect::from_center_size(stand.at, Vec2::splat(18.0)), Id::new(("node", i)), Sense::click_and_drag());
+        let response = ui.interact(Rect::from_center_size(stand.at, Vec2::splat(18.0)), Id::unique(("node", i)), Sense::click_and_drag());
         let colour = if chosen || response.hovered() { Color32::WHITE } else { PLANNED };
         chart.painter.circle_filled(stand.at, 6.5, Color32::from_rgb(5, 7, 11));
         chart.painter.circle_stroke(stand.at, 6.5, Stroke::new(2.0, colour));
@@ -95,7 +94,11 @@ pub fn show(
         if response.hovered() || response.dragged() {
             busy = true;
             ui.ctx().set_cursor_icon(CursorIcon::Grab);
-            path::tip(chart, stand.at + Vec2::new(20.0, 0.0), &format!("Burn {}: {size}, in {left}\ndrag: another time · click: {}", i + 1, if chosen { "done" } else { "change" }));
+            path::tip(
+                chart,
+                stand.at + Vec2::new(20.0, 0.0),
+                &format!("Burn {}: {size}, in {left}\ndrag: another time · click: {}", i + 1, if chosen { "done" } else { "change" }),
+            );
         }
         if let Some(p) = response.interact_pointer_pos().filter(|_| response.dragged()) {
             view.chosen = Some(i);
@@ -121,9 +124,11 @@ fn handles(ui: &Ui, chart: &Chart<'_, '_>, view: &mut MapView, (i, node): (usize
         let arm = along * ARM + along.normalized() * if along.length() < 0.35 { 16.0 } else { 0.0 };
         let arm = if arm.length() < 14.0 { Vec2::angled(1.05 * narrow(f64::from(u8::try_from(k).unwrap_or(0)))) * 20.0 } else { arm };
         let at = stand.at + arm;
-        let response = ui.interact(Rect::from_center_size(at, Vec2::splat(22.0)), Id::new(("handle", k)), Sense::drag());
+        let response = ui.interact(Rect::from_center_size(at, Vec2::splat(22.0)), Id::unique(("handle", k)), Sense::drag());
         let on = response.hovered() || response.dragged();
-        chart.painter.line_segment([stand.at + arm.normalized() * 8.0, at - arm.normalized() * 9.0], Stroke::new(1.2, colour.gamma_multiply(0.7)));
+        chart
+            .painter
+            .line_segment([stand.at + arm.normalized() * 8.0, at - arm.normalized() * 9.0], Stroke::new(1.2, colour.gamma_multiply(0.7)));
         chart.painter.circle_filled(at, 9.5, Color32::from_rgb(10, 13, 18));
         glyph(chart.painter, at, if on { 10.0 } else { 8.0 }, kind, if on { Color32::WHITE } else { colour });
         let unit = DVec3::AXES[axis] * sign;
@@ -136,7 +141,12 @@ fn handles(ui: &Ui, chart: &Chart<'_, '_>, view: &mut MapView, (i, node): (usize
             more += unit * (notches(ui) * step);
             let value = node.parts_m_s().to_array()[axis];
             let name = editor::NAMES[axis];
-            let text = format!("{name} {}\ndrag or wheel: {} a step{}", editor::speed(value), editor::speed(step), if shift { "" } else { " · Shift: finer" });
+            let text = format!(
+                "{name} {}\ndrag or wheel: {} a step{}",
+                editor::speed(value),
+                editor::speed(step),
+                if shift { "" } else { " · Shift: finer" }
+            );
             path::tip(chart, at + arm.normalized() * 6.0, &text);
         }
     }
@@ -154,7 +164,9 @@ fn notches(ui: &Ui) -> f64 {
     ui.input(|i| {
         let turned = i.events.iter().filter_map(|e| match e {
             // Shift turns a wheel sideways on some systems.
-            egui::Event::MouseWheel { delta, unit, .. } => Some(f64::from(delta.x + delta.y) / if *unit == egui::MouseWheelUnit::Point { 50.0 } else { 1.0 }),
+            egui::Event::MouseWheel { delta, unit, .. } => {
+                Some(f64::from(delta.x + delta.y) / if *unit == egui::MouseWheelUnit::Point { 50.0 } else { 1.0 })
+            }
             _ => None,
         });
         turned.sum()

@@ -4,7 +4,7 @@
 
 use super::lines::{Flag, Lines};
 use super::{Chart, format, style};
-use egui::{Align2, Color32, Pos2, Rect, Shape, Stroke, Vec2};
+use egui::{Color32, Pos2, Rect, Shape, Stroke, Vec2};
 use engine::orbit::predict::Kind;
 use engine::space::sphere;
 use engine::time::Moment;
@@ -199,7 +199,8 @@ fn sign(chart: &Chart<'_, '_>, kind: Kind, at: Pos2, colour: Color32, large: boo
 pub fn label(chart: &Chart<'_, '_>, at: Pos2, text: &str, colour: Color32, taken: &mut Vec<Rect>) {
     let galley = chart.painter.layout_no_wrap(text.to_owned(), style::mono(11.0), colour);
     let size = galley.size();
-    let corners = [Vec2::new(9.0, 5.0), Vec2::new(9.0, -5.0 - size.y), Vec2::new(-9.0 - size.x, 5.0), Vec2::new(-9.0 - size.x, -5.0 - size.y)];
+    let corners =
+        [Vec2::new(9.0, 5.0), Vec2::new(9.0, -5.0 - size.y), Vec2::new(-9.0 - size.x, 5.0), Vec2::new(-9.0 - size.x, -5.0 - size.y)];
     let room = corners.into_iter().map(|c| Rect::from_min_size(at + c, size)).find(|r| taken.iter().all(|t| !t.intersects(*r)));
     if let Some(rect) = room {
         chart.painter.galley(rect.min, galley, colour);
@@ -221,7 +222,8 @@ pub fn tip(chart: &Chart<'_, '_>, at: Pos2, text: &str) {
 /// The place on a path that the pointer is near, if it is: when, and where.
 pub fn near(tracks: &[Track], pointer: Pos2, now: Moment) -> Option<(Moment, Pos2)> {
     let end = now.plus_s(1e12);
-    let found = tracks.iter().filter_map(|t| t.nearest(pointer, now, end).map(|(off, at, p)| (off - if t.planned { 1.0 } else { 0.0 }, at, p)));
+    let found =
+        tracks.iter().filter_map(|t| t.nearest(pointer, now, end).map(|(off, at, p)| (off - if t.planned { 1.0 } else { 0.0 }, at, p)));
     found.filter(|f| f.0 < NEAR).min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, at, p)| (at, p))
 }
 

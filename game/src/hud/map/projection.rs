@@ -37,4 +37,3 @@ impl Projection {
         d.dot(self.towards) < 0.0 && across.length() < radius
     }
 }
-

@@ -24,13 +24,14 @@ fn rock(ground: bool) -> Arc<System> {
         radius_m,
         soi_radius_m: f64::INFINITY,
         spin: Spin { pole_dec_rad: [1.2, 0.0], meridian_rad: [0.3, core::f64::consts::TAU * 86_400.0 / 86_164.1], ..Spin::default() },
+        figure: None,
         albedo: Vec3::splat(0.1),
         intensity_cd: Vec3::ZERO,
         air: None,
         relief: ground.then(|| Arc::new(relief)),
         relief_max: 1.0,
     };
-    Arc::new(System { key: "t".into(), name: "T".into(), bodies: vec![body], ephemeris: Ephemeris::default(), hash: String::new() })
+    Arc::new(System::new("t".into(), "T".into(), vec![body], Ephemeris::default(), String::new()))
 }
 
 /// Upright over the ground, moving at `velocity` (east, up, north) over it.
