@@ -30,7 +30,7 @@ pub struct Cli {
 #[derive(Debug, Subcommand)]
 pub enum Mode {
     /// Open the window and play
-    #[command(after_help = "Example:\n  syzygy play --start low-orbit --size 1920x1080")]
+    #[command(after_help = "Example:\n  syzygy play --start leo --size 1920x1080")]
     Play(PlayArgs),
     /// Run the same session without a window
     #[command(after_help = "Example:\n  syzygy headless --start eclipse --ticks 3600 --save out.syzsave --film saves/film")]
@@ -173,7 +173,8 @@ pub struct ShotArgs {
     /// The moment, a Julian date of TDB (else the start's)
     #[arg(long, value_name = "JD", value_parser = julian_date, allow_hyphen_values = true)]
     pub tdb: Option<f64>,
-    /// The camera: `chase`, `cockpit`, `free` or `map`, with `key=value` settings after a colon
+    /// The camera: `chase[:YAW,PITCH[,DISTANCE_M]]`, `cockpit[:YAW,PITCH]`, `map:BODY,YAW,PITCH,RADII` or
+    /// `at:BODY,LAT,LON,HEIGHT_M,HEADING,PITCH[,FOV]` (degrees; the heading may be `sun`, `sun+30`)
     #[arg(long, value_name = "CAMERA", default_value = "chase")]
     pub camera: String,
     /// Size of the picture, pixels
@@ -351,6 +352,15 @@ mod tests {
         fn walk(command: &mut clap::Command, path: &str) {
             let help = command.render_long_help().to_string();
             assert!(path.ends_with("help") || help.contains("Example"), "{path}: {help}");
+            // What an example says is taken by the program, and the starts that it names are there.
+            for line in help.lines().filter(|l| l.starts_with("  syzygy ")) {
+                let words: Vec<&str> = line.split("    ").next().unwrap_or(line).split_whitespace().skip(1).collect();
+                cli(&words).unwrap_or_else(|e| panic!("{line}: {e}"));
+                for pair in words.windows(2).filter(|pair| pair[0] == "--start") {
+                    let start = format!("{}/../assets/starts/{}.toml", env!("CARGO_MANIFEST_DIR"), pair[1]);
+                    assert!(std::path::Path::new(&start).is_file(), "{line}: no start `{}`", pair[1]);
+                }
+            }
             for sub in command.get_subcommands_mut() {
                 let path = format!("{path} {}", sub.get_name());
                 walk(sub, &path);

@@ -126,8 +126,9 @@ pub struct Target {
     pub spot: Option<Spot>,
 }
 
-/// Time-warp levels, in quarter ticks of simulated time per tick of the session: 1/4× … 100,000×.
-pub const WARP_QUARTERS: [u32; 11] = [1, 2, 4, 8, 16, 40, 400, 4_000, 40_000, 200_000, 400_000];
+/// Time-warp levels, in quarter ticks of simulated time per tick of the session: 1/4× … 1,000,000×. A level keeps its number:
+/// saves and logs hold them.
+pub const WARP_QUARTERS: [u32; 12] = [1, 2, 4, 8, 16, 40, 400, 4_000, 40_000, 200_000, 400_000, 4_000_000];
 /// The level that means 1×.
 pub const WARP_ONE: u8 = 2;
 

@@ -22,7 +22,7 @@ const SIZE: (u32, u32) = (96, 54);
 const NOON: f64 = 2_461_263.0;
 const SUNSET: f64 = 2_461_263.299_5;
 const NIGHT: f64 = 2_461_263.45;
-/// Totality west of Iceland, and an hour before.
+/// Totality west of Iceland (at 65.2° N, 25.2° W it is greatest), and an hour before.
 const TOTALITY: f64 = 2_461_265.241_1;
 const BEFORE: f64 = TOTALITY - 1.0 / 24.0;
 
@@ -223,23 +223,28 @@ fn sunset_is_red_and_night_is_dark() {
 #[test]
 fn totality_is_night_at_day() {
     let mut stage = stage();
-    for (camera, darker) in [("at:earth,64.5,-24.5,2,sun+180,30,55", 40.0), ("at:earth,64.5,-24.5,10000,sun+120,-10,55", 20.0)] {
+    // Within the umbra: the open sky keeps 1e-4 … 1e-3 of its light, as measured in totalities; towards the horizon the day goes on.
+    for (camera, darker) in [
+        ("at:earth,65.2,-25.2,2,sun+180,60,55", 1e3..1e4),
+        ("at:earth,65.2,-25.2,2,sun+180,30,55", 5e2..1e4),
+        ("at:earth,65.2,-25.2,10000,sun+120,-10,55", 1e2..1e4),
+    ] {
         let (before, within) = (stage.at(BEFORE, camera), stage.at(TOTALITY, camera));
         let (b, w) = (before.median_of_all(), within.median_of_all());
         println!("{camera}: {b:.1} cd/m² an hour before, {w:.3} in the umbra: {:.0} times darker", b / w);
-        assert!(w > 0.0 && b > darker * w, "{camera}: {b} and {w} cd/m²");
+        assert!(w > 0.0 && darker.contains(&(b / w)), "{camera}: {b} and {w} cd/m²");
     }
 }
 
 #[test]
 fn the_moon_s_shadow_is_seen_from_sixty_thousand_kilometres() {
     let mut stage = stage();
-    let camera = "at:earth,64.5,-24.5,60000000,0,-90,14";
+    let camera = "at:earth,65.2,-25.2,60000000,0,-90,14";
     let (before, within) = (stage.at(BEFORE, camera), stage.at(TOTALITY, camera));
     let share = |x: usize, y: usize| within.median(x - 1..x + 2, y - 1..y + 2) / before.median(x - 1..x + 2, y - 1..y + 2);
     // The disc has a radius of 20 pixels; the shadow lies in its middle, and southwards the day goes on.
     println!("shares southwards: {:?}", (0..18).map(|i| share(48, 27 + i)).collect::<Vec<_>>());
-    assert!(share(48, 27) < 0.35, "in the shadow {} of the light is left", share(48, 27));
+    assert!(share(48, 27) < 0.15, "in the shadow {} of the light is left", share(48, 27));
     assert!((0.75..1.35).contains(&share(48, 42)), "far from the shadow: {}", share(48, 42));
 }
 

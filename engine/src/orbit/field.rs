@@ -259,7 +259,7 @@ mod tests {
             source(Some(0), 6.836_5e15, 29.8 * AU, 30.4 * AU),
         ];
         list[1].zonal = [1.082_626e-3, -2.532e-6, -1.619e-6];
-        list[1].reference_radius_m = 6_378.1363 * KM;
+        list[1].reference_radius_m = 6_378.136_3 * KM;
         list
     }
 

@@ -4,7 +4,6 @@
 //! [`ephemeris`] (position and velocity of body B at time t: the narrow interface), [`field`] (which terms of gravity count for a
 //! ship), [`path`] (where a coasting ship goes under them, and what it meets), [`predict`] (the path ahead with planned burns).
 
-pub mod arc;
 pub mod elements;
 pub mod ephemeris;
 pub mod field;

@@ -96,6 +96,7 @@ pub fn warp(level: u8) -> String {
     match crate::command::WARP_QUARTERS.get(usize::from(level)) {
         Some(1) => "¼×".to_owned(),
         Some(2) => "½×".to_owned(),
+        Some(q) if *q >= 4_000_000 => format!("{},000,000×", q / 4_000_000),
         Some(q) if *q >= 4_000 => format!("{},000×", q / 4_000),
         Some(q) => format!("{}×", q / 4),
         None => NONE.to_owned(),

@@ -76,8 +76,8 @@ pub fn moved_clock(world: &World, hours: f64) -> World {
     let rigid = world.rigid();
     let spin = &world.system.body(rigid.body).spin;
     let turn = spin.icrf_from_fixed(moved.time) * spin.icrf_from_fixed(world.time).inverse();
-    let kept = match world.ship.motion {
-        m @ (Motion::Landed(_) | Motion::Crashed(_)) => m,
+    let kept = match &world.ship.motion {
+        m @ (Motion::Landed(_) | Motion::Crashed(_)) => m.clone(),
         _ => {
             let mut state = rigid.state;
             state.position = Position::new(turn.0 * rigid.state.position.0);

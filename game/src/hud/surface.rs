@@ -5,12 +5,15 @@ use super::panels::area;
 use super::{Reply, Scene, format, style};
 use crate::command::{Action, Spot, Target};
 use crate::world::ship::Motion;
+use crate::world::ship::course::Course;
 use egui::{Align2, Color32, ColorImage, Painter, Pos2, Rect, RichText, Sense, Stroke, TextureHandle, TextureOptions, Vec2};
 use engine::orbit::BodyId;
 use engine::space::relative::narrow;
 use engine::space::sphere;
 
 const SIZE: [usize; 2] = [360, 180];
+/// A globe goes on where the picture begins anew.
+const PICTURE: TextureOptions = TextureOptions { wrap_mode: egui::TextureWrapMode::Repeat, ..TextureOptions::LINEAR };
 /// Rows of the picture that are sampled in a frame: the map fills within a second and the game stays fluent.
 const ROWS_A_FRAME: usize = 6;
 
@@ -107,6 +110,12 @@ pub fn show(ctx: &egui::Context, scene: &Scene<'_>, view: &mut SurfaceView, opac
 }
 
 impl SurfaceView {
+    /// The picture of a body as far as it is made; some more rows of the relief are sampled in each frame.
+    pub fn picture(&mut self, ctx: &egui::Context, scene: &Scene<'_>, id: BodyId) -> Option<egui::TextureId> {
+        self.sample(ctx, scene, id);
+        self.texture.as_ref().map(TextureHandle::id)
+    }
+
     /// Samples some more rows of the relief and remakes the picture.
     fn sample(&mut self, ctx: &egui::Context, scene: &Scene<'_>, id: BodyId) {
         if self.body != Some(id) {
@@ -134,8 +143,8 @@ impl SurfaceView {
         }
         let image = ColorImage::new(SIZE, pixels);
         match &mut self.texture {
-            Some(texture) => texture.set(image, TextureOptions::LINEAR),
-            None => self.texture = Some(ctx.load_texture("surface", image, TextureOptions::LINEAR)),
+            Some(texture) => texture.set(image, PICTURE),
+            None => self.texture = Some(ctx.load_texture("surface", image, PICTURE)),
         }
         ctx.request_repaint();
     }
@@ -189,10 +198,12 @@ fn track(painter: &Painter, rect: Rect, scene: &Scene<'_>, id: BodyId) {
     let period = scene.readout.orbit.period_s;
     let seconds = if period.is_finite() { (1.5 * period).min(10.0 * 86_400.0) } else { 7_200.0 };
     let body = scene.world.system.body(id);
+    let mut course = Course::of(&scene.world.system, *coast.path.knot());
     let mut last: Option<Pos2> = None;
     for i in 0..=300_u32 {
         let t = scene.world.time.plus(ticks(seconds * f64::from(i) / 300.0));
-        let r = coast.arc.sample(t).position.0;
+        let Some(state) = course.at(t) else { break };
+        let r = state.position.0;
         if r.length() < body.radius_m {
             break;
         }

@@ -137,13 +137,19 @@ pub fn world() -> crate::world::World {
 }
 
 /// Runs two frames of a HUD without a window and returns the texts of the second one.
-pub fn run(mut show: impl FnMut(&egui::Context)) -> Vec<String> {
+pub fn run(show: impl FnMut(&egui::Context)) -> Vec<String> {
+    run_at((1280.0, 720.0), 1.0, show)
+}
+
+/// The same in a window of so many points, each of so many pixels.
+pub fn run_at(size: (f32, f32), pixels_per_point: f32, mut show: impl FnMut(&egui::Context)) -> Vec<String> {
     let ctx = egui::Context::default();
+    ctx.set_pixels_per_point(pixels_per_point);
     super::style::apply(&ctx);
     let mut texts = Vec::new();
     for _ in 0..2 {
         let input = egui::RawInput {
-            screen_rect: Some(egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(1280.0, 720.0))),
+            screen_rect: Some(egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(size.0, size.1))),
             ..Default::default()
         };
         let output = ctx.run_ui(input, |ui| show(ui.ctx()));
@@ -156,7 +162,7 @@ pub fn run(mut show: impl FnMut(&egui::Context)) -> Vec<String> {
             let missing: String = text.chars().filter(|c| !c.is_whitespace() && !ctx.fonts_mut(|f| f.has_glyph(&font, *c))).collect();
             assert!(missing.is_empty(), "no font has `{missing}` of `{text}`");
         }
-        let _ = ctx.tessellate(output.shapes.clone(), 1.0);
+        let _ = ctx.tessellate(output.shapes.clone(), pixels_per_point);
         output.drop_without_applying_deltas();
     }
     texts

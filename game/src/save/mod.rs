@@ -187,7 +187,7 @@ mod tests {
         refuses_an_absurd_turn: |s: &mut SaveV1| state_of(s).rate_rad_s[0] = 1e9 => "rate_rad_s.x";
         refuses_negative_propellant: |s: &mut SaveV1| s.ship.propellant_kg = -1.0 => "ship.propellant_kg: -1, expected 0 to";
         refuses_more_than_the_tanks_hold: |s: &mut SaveV1| s.ship.propellant_kg = 1e12 => "ship.propellant_kg";
-        refuses_an_unknown_warp: |s: &mut SaveV1| s.warp_asked = 200 => "warp_asked: 200, expected 0 to 10";
+        refuses_an_unknown_warp: |s: &mut SaveV1| s.warp_asked = 200 => "warp_asked: 200, expected 0 to 11";
         refuses_a_date_beyond_belief: |s: &mut SaveV1| s.time_ticks = i64::MAX => "time_ticks: 9223372036854775807";
         refuses_a_body_that_is_not_there: |s: &mut SaveV1| state_of(s).state.body = "rok".into() => "has no body `rok`", "did you mean `rock`?";
         refuses_another_system: |s: &mut SaveV1| s.system = "three".into() => "saved in `three`";

@@ -3,7 +3,7 @@
 //! All problems are found at once, each named by its field. Nothing is silently replaced by a default.
 
 use super::v1::{
-    BurnV1, CoastAttitudeV1, GroundV1, LandingV1, MotionV1, NodeV1, PhaseV1, ReasonV1, RestingV1, RigidV1, SaveV1, ShipV1, StageV1, StateV1,
+    BurnV1, CoastAttitudeV1, GroundV1, KnotV1, LandingV1, MotionV1, NodeV1, PhaseV1, RestingV1, RigidV1, SaveV1, ShipV1, StageV1, StateV1,
 };
 use crate::command::{MOST_NODES, Node, Spot, Target, WARP_QUARTERS};
 use crate::world::World;
@@ -11,14 +11,14 @@ use crate::world::ship::contact::Ground;
 use crate::world::ship::guidance::burn::Stage;
 use crate::world::ship::guidance::{Burn, Landing, Phase};
 use crate::world::ship::spec::ShipSpec;
-use crate::world::ship::warp::{Reason, Wake};
 use crate::world::ship::{Coast, CoastAttitude, Effort, Motion, Resting, Rigid, Ship};
 use crate::world::system::System;
-use engine::orbit::arc::Arc as OrbitArc;
-use engine::orbit::{BodyId, State};
+use engine::orbit::path::twofold::Twofold;
+use engine::orbit::path::{End, Knot, Path};
+use engine::orbit::{BodyId, State, kepler};
 use engine::rigid::{Contact, LegState, PatchKey};
 use engine::space::{Position, Rotation, Vector, Velocity};
-use engine::time::SimTime;
+use engine::time::{Moment, SimTime, TICK_S};
 use engine::units::{AU, SPEED_OF_LIGHT};
 use glam::{DQuat, DVec3};
 use std::sync::Arc;
@@ -30,6 +30,8 @@ const FASTEST_TURN_RAD_S: f64 = 1.0e3;
 /// Times that are believed, ticks: ±100,000 years.
 const FARTHEST_TICKS: i64 = 60 * 86_400 * 36_525_000;
 
+/// Steps from a knot to now that are believed.
+const MOST_STEPS: u32 = 10_000;
 /// Legs that are believed.
 const MOST_LEGS: usize = 64;
 
@@ -148,13 +150,9 @@ impl Checker<'_> {
             MotionV1::Contact(r) => Motion::Contact(self.rigid("ship.motion.Contact", r)),
             MotionV1::Landed(r) => Motion::Landed(self.resting("ship.motion.Landed", r)),
             MotionV1::Crashed(r) => Motion::Crashed(self.resting("ship.motion.Crashed", r)),
-            MotionV1::Coast { epoch_ticks, state, attitude, wake_ticks, wake_reason } => {
+            MotionV1::Coast { epoch_ticks, state, attitude, knot, wake_ticks: _, wake_reason: _ } => {
                 let (body, state) = self.state("ship.motion.Coast.state", state);
                 let epoch = self.ticks("ship.motion.Coast.epoch_ticks", *epoch_ticks);
-                let at = self.ticks("ship.motion.Coast.wake_ticks", *wake_ticks);
-                if at.ticks < now {
-                    self.problems.push(format!("ship.motion.Coast.wake_ticks: {} lies before time_ticks ({now})", at.ticks));
-                }
                 let attitude = match attitude {
                     CoastAttitudeV1::Inertial { attitude, rate_rad_s } => CoastAttitude::Inertial {
                         icrf_from_hull: self.rotation("ship.motion.Coast.attitude.Inertial.attitude", *attitude),
@@ -164,17 +162,45 @@ impl Checker<'_> {
                         CoastAttitude::Held { hold: *hold, offset: self.rotation("ship.motion.Coast.attitude.Held.offset", *offset) }
                     }
                 };
-                let reason = match wake_reason {
-                    ReasonV1::Horizon => Reason::Horizon,
-                    ReasonV1::Low => Reason::Low,
-                    ReasonV1::Leave => Reason::Leave,
-                    ReasonV1::Enter(key) => Reason::Enter(self.body("ship.motion.Coast.wake_reason.Enter", key)),
-                    ReasonV1::Guidance => Reason::Guidance,
+                let now = SimTime::from_ticks(now);
+                let knot = match knot {
+                    Some(k) => self.knot(body, &state, k),
+                    // A conic then; from where it has led to now the ship goes on under all forces.
+                    None => Knot::new(body, now, &kepler::propagate(self.system.body(body).gm_m3_s2, &state, now.since(epoch))),
                 };
-                let gm_m3_s2 = self.system.body(body).gm_m3_s2;
-                Motion::Coast(Coast { arc: OrbitArc { body, gm_m3_s2, epoch, state }, attitude, wake: Wake { at, reason } })
+                Motion::Coast(Coast::new(self.path(knot, now), attitude, epoch))
             }
         }
+    }
+    fn knot(&mut self, host: BodyId, state: &State<engine::space::Centred>, k: &KnotV1) -> Knot {
+        let tick = self.ticks("ship.motion.Coast.knot.tick", k.tick);
+        let beyond_s = self.within("ship.motion.Coast.knot.beyond_s", k.beyond_s, 0.0, 2.0 * TICK_S);
+        let position = self.vector("ship.motion.Coast.knot.position_low_m", k.position_low_m, 1.0);
+        let velocity = self.vector("ship.motion.Coast.knot.velocity_low_m_s", k.velocity_low_m_s, 1.0);
+        Knot {
+            host,
+            at: Moment { tick, beyond_s },
+            position: Twofold { high: state.position.0, low: position },
+            velocity: Twofold { high: state.velocity.0, low: velocity },
+        }
+    }
+    /// The path from a knot, at the step that says where the ship is now. A save's own knot begins it; with other files of the
+    /// system it may take some steps.
+    fn path(&mut self, knot: Knot, now: SimTime) -> Path {
+        let (gravity, places) = (&self.system.gravity, &self.system.ephemeris);
+        let mut path = Path::new(gravity, places, knot);
+        if !self.problems.is_empty() {
+            return path;
+        }
+        let mut left = MOST_STEPS;
+        while left > 0 && Moment::from(now).since(path.step().until) >= 0.0 && path.step().end != End::Low {
+            path.next(gravity, places);
+            left -= 1;
+        }
+        if left == 0 || Moment::from(now).since(path.knot().at) < 0.0 {
+            self.problems.push(format!("ship.motion.Coast.knot: its path does not lead to time_ticks ({})", now.ticks));
+        }
+        path
     }
     fn landing(&mut self, l: &LandingV1) -> Landing {
         let body = self.body("ship.landing.body", &l.body);

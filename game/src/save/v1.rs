@@ -9,12 +9,12 @@ use crate::world::World;
 use crate::world::ship::contact::Ground;
 use crate::world::ship::guidance::burn::Stage;
 use crate::world::ship::guidance::{Burn, Landing, Phase};
-use crate::world::ship::warp::{Reason, Wake};
 use crate::world::ship::{Coast, CoastAttitude, Effort, Motion, Resting, Rigid, Ship};
 use crate::world::system::System;
+use engine::orbit::path::Knot;
 use engine::orbit::{BodyId, State};
 use engine::rigid::Contact;
-use engine::space::Centred;
+use engine::space::{Centred, Position, Velocity};
 use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
 
@@ -152,16 +152,21 @@ pub struct GroundV1 {
 pub enum MotionV1 {
     /// Sampled.
     Coast {
-        /// Ticks since J2000 TDB.
+        /// Since when it coasts, ticks since J2000 TDB.
         epoch_ticks: i64,
-        /// Position and velocity at the epoch.
+        /// Position and velocity at the knot; in saves without one at the epoch, from where the path was a conic.
         state: StateV1,
         /// Attitude.
         attitude: CoastAttitudeV1,
-        /// When the path must be looked at again.
-        wake_ticks: i64,
-        /// Why.
-        wake_reason: ReasonV1,
+        /// Where the present step of the path begins.
+        #[serde(default)]
+        knot: Option<KnotV1>,
+        /// Of saves without a knot: when the path was to be looked at again. No longer written.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        wake_ticks: Option<i64>,
+        /// Of saves without a knot: why. No longer written.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        wake_reason: Option<ReasonV1>,
     },
     /// Integrated.
     Fly(RigidV1),
@@ -183,6 +188,20 @@ pub struct StateV1 {
     pub position_m: [f64; 3],
     /// m/s.
     pub velocity_m_s: [f64; 3],
+}
+
+/// What makes a state a knot of a path, as kept.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct KnotV1 {
+    /// When: ticks since J2000 TDB.
+    pub tick: i64,
+    /// And seconds beyond, less than a tick.
+    pub beyond_s: f64,
+    /// The second word of the position, m.
+    pub position_low_m: [f64; 3],
+    /// The second word of the velocity, m/s.
+    pub velocity_low_m_s: [f64; 3],
 }
 
 /// A rigid body, as kept.
@@ -229,7 +248,7 @@ pub enum CoastAttitudeV1 {
     },
 }
 
-/// Why a path must be looked at again, as kept.
+/// Why a path was to be looked at again, in saves without a knot.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum ReasonV1 {
@@ -300,24 +319,26 @@ impl Keeper<'_> {
         RestingV1 { body: self.key(r.body), position_m: r.position.0.to_array(), attitude: quat(r.fixed_from_hull.0) }
     }
     fn coast(&self, c: &Coast) -> MotionV1 {
-        let Wake { at, reason } = c.wake;
+        let Coast { path, attitude, since, ahead: _ } = c;
+        let Knot { host, at, position, velocity } = *path.knot();
+        let state = State { position: Position::new(position.high), velocity: Velocity::new(velocity.high) };
         MotionV1::Coast {
-            epoch_ticks: c.arc.epoch.ticks,
-            state: self.state(c.arc.body, &c.arc.state),
-            attitude: match c.attitude {
+            epoch_ticks: since.ticks,
+            state: self.state(host, &state),
+            attitude: match *attitude {
                 CoastAttitude::Inertial { icrf_from_hull, rate } => {
                     CoastAttitudeV1::Inertial { attitude: quat(icrf_from_hull), rate_rad_s: vec(rate) }
                 }
                 CoastAttitude::Held { hold, offset } => CoastAttitudeV1::Held { hold, offset: quat(offset) },
             },
-            wake_ticks: at.ticks,
-            wake_reason: match reason {
-                Reason::Horizon => ReasonV1::Horizon,
-                Reason::Low => ReasonV1::Low,
-                Reason::Leave => ReasonV1::Leave,
-                Reason::Enter(body) => ReasonV1::Enter(self.key(body)),
-                Reason::Guidance => ReasonV1::Guidance,
-            },
+            knot: Some(KnotV1 {
+                tick: at.tick.ticks,
+                beyond_s: at.beyond_s,
+                position_low_m: vec(position.low),
+                velocity_low_m_s: vec(velocity.low),
+            }),
+            wake_ticks: None,
+            wake_reason: None,
         }
     }
     fn motion(&self, motion: &Motion) -> MotionV1 {

@@ -2,18 +2,20 @@
 //! mode only; a flight's own time passes in ticks.
 
 use super::World;
-use super::ship::{Coast, Motion};
-use engine::orbit::arc::Arc as OrbitArc;
+use super::ship::Motion;
+use engine::orbit::path::Knot;
 use engine::time::SimTime;
 
 impl World {
-    /// Sets the time. A coasting ship keeps its place on its path, a resting one its place on the ground.
+    /// Sets the time. A coasting ship keeps its state about its body and goes on from it, a resting one keeps its place on the ground.
     pub fn move_clock(&mut self, to: SimTime) {
         let moved = to.ticks - self.time.ticks;
+        let from = self.time;
         self.time = to;
         self.quarters = 0;
-        if let Motion::Coast(Coast { arc, attitude, .. }) = self.ship.motion {
-            self.start_arc(OrbitArc { epoch: arc.epoch.plus(moved), ..arc }, attitude);
+        if let Motion::Coast(coast) = &self.ship.motion {
+            let knot = Knot::new(coast.path.host(), to, &coast.path.sample(from));
+            self.start_path(knot, coast.attitude, coast.since.plus(moved));
         }
     }
 }

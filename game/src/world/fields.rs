@@ -4,10 +4,10 @@
 
 use super::World;
 use super::ship::guidance::Phase;
-use super::ship::warp::Reason;
 use super::ship::{CoastAttitude, Motion, Rigid};
 use crate::command::{Guidance, Hold};
-use engine::space::{Frame, Position, Rotation};
+use engine::orbit::State;
+use engine::space::{Frame, Position, Rotation, Velocity};
 use glam::{DQuat, DVec3};
 
 /// The subsystems that a hash names, in order.
@@ -66,26 +66,23 @@ impl Fields {
                 self.quaternion(rest.fixed_from_hull.0);
             }
             Motion::Coast(coast) => {
-                self.int("time", "epoch", coast.arc.epoch.ticks);
+                self.int("time", "since", coast.since.ticks);
                 let (icrf_from_hull, rate) = match coast.attitude {
                     CoastAttitude::Inertial { icrf_from_hull, rate } => (icrf_from_hull, rate),
                     CoastAttitude::Held { offset, .. } => (offset, DVec3::ZERO),
                 };
+                // The path is what its present step begins with.
+                let knot = coast.path.knot();
+                self.int("time", "knot.tick", knot.at.tick.ticks);
+                self.real("time", "knot.beyond_s", knot.at.beyond_s);
                 self.rigid(&Rigid {
-                    body: coast.arc.body,
-                    state: coast.arc.state,
+                    body: knot.host,
+                    state: State { position: Position::new(knot.position.high), velocity: Velocity::new(knot.velocity.high) },
                     icrf_from_hull: Rotation::new(icrf_from_hull),
                     rate: engine::space::Vector::new(rate),
                 });
-                self.int("time", "wake", coast.wake.at.ticks);
-                let reason = match coast.wake.reason {
-                    Reason::Horizon => 0,
-                    Reason::Low => 1,
-                    Reason::Leave => 2,
-                    Reason::Guidance => 3,
-                    Reason::Enter(body) => 4 + i64::from(body.0),
-                };
-                self.int("time", "wake.reason", reason);
+                self.vector("orbit", ["position.low.x", "position.low.y", "position.low.z"], knot.position.low);
+                self.vector("orbit", ["velocity.low.x", "velocity.low.y", "velocity.low.z"], knot.velocity.low);
             }
         }
     }

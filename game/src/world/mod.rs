@@ -4,6 +4,7 @@
 //! [`readout`] for what the World tells. [`start`] makes a World, [`fields`] lists its bits for replays. Not here:
 //! anything drawn, heard or saved.
 
+pub mod ahead;
 pub mod clock;
 pub mod eclipse;
 pub mod fields;
@@ -16,7 +17,8 @@ pub mod system;
 mod tests;
 
 use crate::command::{Action, Axes, Commands, Guidance, Hold, Target, WARP_ONE, WARP_QUARTERS};
-use engine::orbit::arc::Arc as OrbitArc;
+use engine::orbit::path::model::LEAVE;
+use engine::orbit::path::{End, Event, Knot, Path};
 use engine::orbit::{BodyId, State};
 use engine::space::{Position, Rotation, Vector, Velocity};
 use engine::time::SimTime;
@@ -24,7 +26,7 @@ use glam::DVec3;
 use ship::attitude::{self, offset_of_body};
 use ship::contact;
 use ship::local::Local;
-use ship::warp::{self, Reason, Wake};
+use ship::warp;
 use ship::{Coast, CoastAttitude, Motion, Resting, Rigid, Ship, flight};
 use std::sync::Arc;
 use system::System;
@@ -79,7 +81,7 @@ impl World {
         if self.system.bodies.len() != system.bodies.len() || !self.system.bodies.iter().zip(&system.bodies).all(same) {
             return false;
         }
-        self.leave_arc();
+        self.leave_path();
         if let Motion::Landed(rest) | Motion::Crashed(rest) = &mut self.ship.motion {
             let up = rest.position.0.normalize_or(DVec3::Z);
             let ground = |s: &System| {
@@ -113,7 +115,7 @@ impl World {
             Action::Hold(hold) => {
                 (ship.hold, ship.held) = (hold, None);
                 if hold == Hold::Node {
-                    self.leave_arc();
+                    self.leave_path();
                 }
             }
             Action::Guidance(guidance) => {
@@ -135,7 +137,7 @@ impl World {
                     ship.landing = None;
                 }
                 if ship.hold == Hold::Target {
-                    self.leave_arc();
+                    self.leave_path();
                 }
             }
             Action::Refuel => ship.propellant_kg = ship.spec.mass.propellant_kg,
@@ -144,7 +146,7 @@ impl World {
             Action::AddNode(_) | Action::ChangeNode(..) | Action::DeleteNode(_) => {
                 ship.edit_nodes(action, self.time);
                 if ship.hold == Hold::Node || ship.guidance == Guidance::Node {
-                    self.leave_arc();
+                    self.leave_path();
                 }
             }
             Action::WarpTo(to) => {
@@ -170,7 +172,7 @@ impl World {
                     CoastAttitude::Held { hold, .. } => hold == self.ship.hold && self.ship.guidance == Guidance::Manual,
                 };
                 if stirred || !held {
-                    self.leave_arc();
+                    self.leave_path();
                 }
             }
             Motion::Landed(rest) if stirred => self.ship.motion = Motion::Contact(self.resting(rest)),
@@ -179,7 +181,7 @@ impl World {
     }
 
     /// From sampling to integration, at this tick.
-    fn leave_arc(&mut self) {
+    fn leave_path(&mut self) {
         if let Motion::Coast(coast) = &self.ship.motion {
             self.ship.motion = Motion::Fly(self.coasting(coast, self.time));
         }
@@ -196,12 +198,26 @@ impl World {
     }
 
     /// The highest warp level that the ship's motion allows now.
-    fn warp_limit(&self) -> u8 {
-        match &self.ship.motion {
-            Motion::Coast(coast) if coast.wake.reason != Reason::Horizon => warp::level_before(coast.wake.at.ticks - self.time.ticks),
+    fn warp_limit(&mut self) -> u8 {
+        let planned = self.planned();
+        match &mut self.ship.motion {
+            Motion::Coast(coast) => {
+                let met = coast.ahead.first(&self.system, &coast.path, self.time, self.warp_asked);
+                let ahead = |at: SimTime| at.ticks - self.time.ticks;
+                // A burn that the pilot planned surprises nobody.
+                let hurried = planned.filter(|_| self.ship.guidance == Guidance::Node);
+                let first = met.into_iter().chain(planned.filter(|_| hurried.is_none())).min();
+                let limit = first.map_or(u8::MAX, |at| warp::level_before(ahead(at)));
+                hurried.map_or(limit, |at| limit.min(warp::hurried_level(ahead(at))))
+            }
             Motion::Fly(_) | Motion::Contact(_) => warp::FLY_LEVEL,
             _ => u8::MAX,
         }
+    }
+
+    /// When the autopilot wants to fly, if it waits for that.
+    fn planned(&self) -> Option<SimTime> {
+        self.ship.planned_wake().map(|at| at.max(self.time))
     }
 
     /// Lets simulated time pass. What remains of a tick's share is dropped when the clock must slow down.
@@ -209,18 +225,27 @@ impl World {
         let end = self.time.plus(ticks);
         let mut stepped = 0;
         while self.time < end {
-            match self.ship.motion {
+            let planned = self.planned();
+            match &mut self.ship.motion {
                 Motion::Landed(_) | Motion::Crashed(_) => self.time = end,
-                Motion::Coast(coast) if coast.wake.at > end => self.time = end,
                 Motion::Coast(coast) => {
-                    self.time = coast.wake.at;
-                    self.wake(coast);
+                    let to = planned.map_or(end, |at| at.min(end));
+                    match coast.path.advance(&self.system.gravity, &self.system.ephemeris, to) {
+                        Some(event) => self.meet(event),
+                        None => {
+                            self.time = to;
+                            if planned == Some(to) {
+                                self.leave_path();
+                            }
+                        }
+                    }
                 }
                 Motion::Fly(rigid) | Motion::Contact(rigid) => {
                     if stepped >= i64::from(WARP_QUARTERS[usize::from(warp::FLY_LEVEL)] / 4) {
                         return;
                     }
                     stepped += 1;
+                    let rigid = *rigid;
                     self.fly(rigid, axes);
                 }
             }
@@ -246,12 +271,12 @@ impl World {
             self.change_sphere();
         }
         if stepped.quiet {
-            self.enter_arc();
+            self.enter_path();
         }
     }
 
     /// From integration to sampling, where nothing acts but gravity.
-    fn enter_arc(&mut self) {
+    fn enter_path(&mut self) {
         let rigid = self.rigid();
         let local = self.local(&rigid);
         let follows_stick = matches!(self.ship.hold, Hold::Rate | Hold::KillRotation);
@@ -265,64 +290,31 @@ impl World {
             Some(frame) if manual => CoastAttitude::Held { hold, offset: (frame.conjugate() * q).normalize() },
             _ => CoastAttitude::Inertial { icrf_from_hull: q, rate: if hold == Hold::Free { rigid.rate.0 } else { DVec3::ZERO } },
         };
-        let arc = OrbitArc { body: rigid.body, gm_m3_s2: local.body.gm_m3_s2, epoch: self.time, state: rigid.state };
+        let knot = Knot::new(rigid.body, self.time, &rigid.state);
         self.ship.effort = ship::Effort::default();
-        self.start_arc(arc, attitude);
+        self.start_path(knot, attitude, self.time);
     }
 
-    /// Begins (or goes on with) a sampled path, looking ahead from now.
-    fn start_arc(&mut self, arc: OrbitArc, attitude: CoastAttitude) {
-        let wake = warp::search(&self.system, &arc, self.time);
-        self.ship.motion = Motion::Coast(Coast { arc, attitude, wake: self.planned(wake) });
+    /// Begins a sampled path.
+    fn start_path(&mut self, knot: Knot, attitude: CoastAttitude, since: SimTime) {
+        let path = Path::new(&self.system.gravity, &self.system.ephemeris, knot);
+        self.ship.motion = Motion::Coast(Coast::new(path, attitude, since));
     }
 
-    /// The earlier of what the path brings and what the autopilot planned.
-    fn planned(&self, wake: Wake) -> Wake {
-        match self.ship.planned_wake() {
-            Some(at) if at <= wake.at => Wake { at: at.max(self.time), reason: Reason::Guidance },
-            _ => wake,
-        }
-    }
-
-    /// What a sampled path was to be looked at for, has come.
-    fn wake(&mut self, coast: Coast) {
-        match coast.wake.reason {
-            Reason::Horizon => self.start_arc(coast.arc, coast.attitude),
-            Reason::Guidance => self.leave_arc(),
-            Reason::Low => {
-                self.leave_arc();
-                // The autopilot planned to come here; a pilot may not have.
-                if self.ship.guidance != Guidance::Land {
-                    self.warp_asked = self.warp_asked.min(WARP_ONE);
-                }
+    /// What a path came to: it is dealt with at the first tick that is not before it.
+    fn meet(&mut self, event: Event) {
+        self.time = event.at.next_tick().max(self.time);
+        if event.end == End::Low {
+            self.leave_path();
+            // The autopilot planned to come here; a pilot may not have.
+            if self.ship.guidance == Guidance::Land {
+                return;
             }
-            Reason::Leave | Reason::Enter(_) => {
-                let to = match coast.wake.reason {
-                    Reason::Enter(body) => Some(body),
-                    _ => self.system.body(coast.arc.body).parent,
-                };
-                self.leave_arc();
-                if let (Some(to), Motion::Fly(rigid)) = (to, self.ship.motion) {
-                    self.ship.motion = Motion::Fly(self.about(rigid, to));
-                }
-                self.enter_sphere(coast.attitude);
-                self.warp_asked = self.warp_asked.min(WARP_ONE);
-            }
+        } else if let Motion::Coast(Coast { attitude: CoastAttitude::Held { .. }, .. }) = self.ship.motion {
+            // The path goes on about another body; a hold about it turns the ship first.
+            self.leave_path();
         }
-    }
-
-    /// Goes on coasting about the body that dominates now, when the attitude allows it (a hold about the new body turns the
-    /// ship first).
-    fn enter_sphere(&mut self, attitude: CoastAttitude) {
-        let (CoastAttitude::Inertial { rate, .. }, Motion::Fly(rigid)) = (attitude, self.ship.motion) else {
-            return;
-        };
-        let gm = self.system.body(rigid.body).gm_m3_s2;
-        let arc = OrbitArc { body: rigid.body, gm_m3_s2: gm, epoch: self.time, state: rigid.state };
-        // From the next tick on: rounding must not send the ship to and fro across the boundary at one tick.
-        let wake = warp::search(&self.system, &arc, self.time.plus(1));
-        let attitude = CoastAttitude::Inertial { icrf_from_hull: rigid.icrf_from_hull.0, rate };
-        self.ship.motion = Motion::Coast(Coast { arc, attitude, wake: self.planned(wake) });
+        self.warp_asked = self.warp_asked.min(WARP_ONE);
     }
 
     /// Hands a flying ship to the body that dominates it.
@@ -330,7 +322,7 @@ impl World {
         let rigid = self.rigid();
         let host = self.system.body(rigid.body);
         let r = rigid.state.position.0;
-        let mut to = (r.length() > host.soi_radius_m).then_some(host.parent).flatten();
+        let mut to = (r.length() > LEAVE * host.soi_radius_m).then_some(host.parent).flatten();
         for (i, body) in self.system.bodies.iter().enumerate() {
             let id = BodyId(u16::try_from(i).unwrap_or(0));
             if body.parent == Some(rigid.body) && (r - offset_of_body(&self.system, rigid.body, id, self.time)).length() < body.soi_radius_m
@@ -354,12 +346,12 @@ impl World {
         Rigid { body: to, state, ..rigid }
     }
 
-    /// A coasting ship at `t`.
+    /// A coasting ship at `t`, a tick of its path's present step.
     fn coasting(&self, coast: &Coast, t: SimTime) -> Rigid {
-        let state = coast.arc.sample(t);
-        let body = coast.arc.body;
+        let state = coast.path.sample(t);
+        let body = coast.path.host();
         let (q, rate) = match coast.attitude {
-            CoastAttitude::Inertial { icrf_from_hull, rate } => (attitude::advance(icrf_from_hull, rate, t.since(coast.arc.epoch)), rate),
+            CoastAttitude::Inertial { icrf_from_hull, rate } => (attitude::advance(icrf_from_hull, rate, t.since(coast.since)), rate),
             CoastAttitude::Held { hold, offset } => {
                 let local = Local::new(&self.system, t, body, &state);
                 let frame = attitude::hold_frame(hold, &local, self.target).unwrap_or_default();

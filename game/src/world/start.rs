@@ -135,7 +135,7 @@ impl World {
     pub fn new(system: Arc<System>, time: SimTime, ship: Ship) -> Self {
         let mut world = Self { system, time, quarters: 0, warp: WARP_ONE, warp_asked: WARP_ONE, ship, target: None, warp_to: None };
         if matches!(world.ship.motion, Motion::Fly(_)) {
-            world.enter_arc();
+            world.enter_path();
         }
         world
     }

@@ -7,7 +7,7 @@ use engine::air::density::Column;
 use engine::orbit::ephemeris::Ephemeris;
 use engine::orbit::field::{Bound, Source};
 use engine::orbit::gravity::figure::Figure;
-use engine::orbit::path::{self, Model};
+use engine::orbit::path::{self, End, Knot, Model, Path, Setting};
 use engine::orbit::rotation::Spin;
 use engine::orbit::{BodyId, State, kepler};
 use engine::space::Centred;
@@ -97,8 +97,20 @@ impl System {
         &self.bodies[id.index()]
     }
     /// Where a ship that coasts from a state about `host` at `from` will be: the body that dominates there, and the state about it.
+    /// Before `from`, and beyond the ground, the state from which there is no further.
     pub fn ahead(&self, host: BodyId, state: &State<Centred>, from: SimTime, to: SimTime) -> (BodyId, State<Centred>) {
-        (host, kepler::propagate(self.body(host).gm_m3_s2, state, to.since(from)))
+        if to <= from {
+            return (host, kepler::propagate(self.body(host).gm_m3_s2, state, to.since(from)));
+        }
+        let knot = Knot::new(host, from, state);
+        let setting = Setting { to_ground: true, ..Setting::default() };
+        let mut path = Path::with(&self.gravity, &self.ephemeris, knot, setting);
+        while let Some(event) = path.advance(&self.gravity, &self.ephemeris, to) {
+            if event.end == End::Low {
+                return (path.host(), path.step().sample(event.at));
+            }
+        }
+        (path.host(), path.sample(to))
     }
 
     /// The handle of a key.

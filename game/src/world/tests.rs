@@ -1,5 +1,7 @@
 //! Tests of the World as a whole, on small made-up systems: coasting, warp, air, holds, hover, landing.
 
+mod coast;
+
 use super::readout::Situation;
 use super::ship::spec::ShipSpec;
 use super::ship::spec::tests::torch;
@@ -169,7 +171,7 @@ fn a_flyby_changes_spheres_at_the_same_ticks_at_every_warp() {
         let velocity = DVec3::new(-s, c, 0.0) * (2.0 * 3.986_004_4e14 * (1.0 / r - 1.0 / 4.1e8)).sqrt();
         let state = State { position: Position::new(DVec3::new(c, s, 0.0) * r), velocity: Velocity::new(velocity) };
         world.ship.motion = Motion::Fly(Rigid { state, ..world.rigid() });
-        world.enter_arc();
+        world.enter_path();
         world.warp_asked = level;
         let mut spheres = vec![world.ship.body()];
         while world.time.ticks < end {

@@ -12,7 +12,7 @@ mod coefficients;
 #[cfg(test)]
 mod tests;
 
-use super::sums::{two_product, two_sum};
+use super::sums::{Carry, carry, two_product, two_sum};
 use super::{Force, Points, Step, Work};
 use coefficients::{APART, FROM_NEWTON, NODES, SHIFT, TERMS, TO_NEWTON};
 use glam::DVec3;
@@ -30,11 +30,8 @@ const SHORTEST: f64 = 1e-28;
 /// What a path needs, beside its [`Points`], to go on with the same bits: save it with them. Arrays are flat (x, y, z of each point).
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Memory {
-    /// What rounding has dropped of the time so far.
-    t_low: f64,
-    /// What rounding has dropped of positions and velocities.
-    q_low: Vec<f64>,
-    v_low: Vec<f64>,
+    /// What rounding has dropped so far.
+    low: Carry,
     /// The step that the control asks for next; 0 before the first. Signed.
     natural: f64,
     /// The last step made, signed; 0 before the first. From here on: that step, for prediction and dense output.
@@ -125,11 +122,11 @@ impl GaussRadau {
     /// One step of natural size towards `t_end` (later or earlier than now), cut so that it never passes it.
     pub fn step<F: Force>(&mut self, force: &F, points: &mut Points, t_end: f64) -> Step {
         let n = points.q.len();
-        if points.v.len() != n || self.memory.q_low.len() != 3 * n || self.a.len() != n {
+        if points.v.len() != n || self.memory.low.q.len() != 3 * n || self.a.len() != n {
             self.fit(n);
             points.v.resize(n, DVec3::ZERO);
         }
-        let left = (t_end - points.t) - self.memory.t_low;
+        let left = self.memory.low.left(points, t_end);
         if left == 0.0 {
             return Step::Arrived;
         }
@@ -140,7 +137,7 @@ impl GaussRadau {
         let mut natural = if self.memory.natural != 0.0 { self.memory.natural.copysign(left) } else { self.first_guess(points, left) };
         loop {
             let dt = if natural.abs() < left.abs() { natural } else { left };
-            if !(dt.abs() > shortest) || !dt.is_finite() {
+            if !dt.is_finite() || dt.abs() <= shortest {
                 return Step::Stalled;
             }
             let predicted = self.predict(dt);
@@ -148,7 +145,7 @@ impl GaussRadau {
             let wanted = self.wanted(dt);
             // A ratio that is no number comes from a polynomial that is none: much too long a step.
             let ratio = wanted / dt;
-            if !(ratio >= 1.0 / MAX_CHANGE) || !self.keeps_finite(points, dt) {
+            if ratio.is_nan() || ratio < 1.0 / MAX_CHANGE || !self.keeps_finite(points, dt) {
                 self.work.rejected += 1;
                 natural = if ratio > 0.0 && ratio < 1.0 { wanted } else { dt / (4.0 * MAX_CHANGE) };
                 continue;
@@ -156,7 +153,7 @@ impl GaussRadau {
             let longest = MAX_CHANGE * dt.abs().max(natural.abs());
             self.memory.natural = wanted.abs().min(longest).min(f64::MAX).copysign(dt);
             self.memory.predicted = predicted;
-            self.commit(points, dt, t_end);
+            self.commit(points, dt);
             self.work.steps += 1;
             return Step::Made;
         }
@@ -178,8 +175,7 @@ impl GaussRadau {
     /// Makes every buffer that of `n` points.
     fn fit(&mut self, n: usize) {
         let m = 3 * n;
-        self.memory.q_low.resize(m, 0.0);
-        self.memory.v_low.resize(m, 0.0);
+        self.memory.low.fit(n);
         self.a0.resize(m, 0.0);
         for k in 0..TERMS {
             for list in [&mut self.b[k], &mut self.e[k], &mut self.g[k]] {
@@ -204,6 +200,7 @@ impl GaussRadau {
     }
 
     /// Fills b, e and g for a step of `dt` from the last step's polynomial [Everhart 1985, eq. 13]; false where that says nothing.
+    #[allow(clippy::needless_range_loop, reason = "k is a row of five tables and a power")]
     fn predict(&mut self, dt: f64) -> bool {
         let m = &self.memory;
         let ratio = dt / m.done;
@@ -245,14 +242,14 @@ impl GaussRadau {
         let mut last = f64::INFINITY;
         for sweep in 0..MAX_ITERATIONS {
             let (mut change, mut size) = (0.0_f64, 0.0_f64);
-            for node in 1..=TERMS {
-                let place = Weights::at(NODES[node], dt);
+            for (node, h) in NODES.iter().enumerate().skip(1) {
+                let place = Weights::at(*h, dt);
                 let (q0, v0) = (flat(&points.q), flat(&points.v));
-                place.positions(q0, &self.memory.q_low, v0, &self.a0, &self.b, &mut self.q);
+                place.positions(q0, &self.memory.low.q, v0, &self.a0, &self.b, &mut self.q);
                 if F::USES_VELOCITY {
-                    place.velocities(v0, &self.memory.v_low, &self.a0, &self.b, &mut self.v);
+                    place.velocities(v0, &self.memory.low.v, &self.a0, &self.b, &mut self.v);
                 }
-                force.accelerations(points.t + NODES[node] * dt, &self.q, &self.v, &mut self.a);
+                force.accelerations(points.t + h * dt, &self.q, &self.v, &mut self.a);
                 let (moved, largest) = self.absorb(node);
                 (change, size) = (moved, largest);
             }
@@ -261,7 +258,7 @@ impl GaussRadau {
             // What b₆ moves by is 4.3e-3 of that in the acceleration: below 1e-13 it is noise there. The sweeps converge
             // geometrically, the later ones up to ten times slower than the first; from noise on they shrink no longer.
             let next = if sweep > 0 { 10.0 * error * (error / last) } else { error };
-            if !(next > 1e-13) || sweep > 1 && error >= last {
+            if next.is_nan() || next <= 1e-13 || sweep > 1 && error >= last {
                 break;
             }
             last = error;
@@ -276,8 +273,8 @@ impl GaussRadau {
         for (i, a) in flat(&self.a).iter().enumerate() {
             // By division, as in `bend_over`: a rounded reciprocal makes the energy of 1000 orbits drift by 1e-14.
             let mut g = (a - self.a0[i]) / NODES[node];
-            for m in 1..node {
-                g = (g - self.g[m - 1][i]) * apart[m];
+            for (lower, apart) in self.g.iter().zip(&apart[1..node]) {
+                g = (g - lower[i]) * apart;
             }
             let change = g - self.g[node - 1][i];
             self.g[node - 1][i] = g;
@@ -331,7 +328,7 @@ impl GaussRadau {
     }
 
     /// Makes the step: adds it to points and memory.
-    fn commit(&mut self, points: &mut Points, dt: f64, t_end: f64) {
+    fn commit(&mut self, points: &mut Points, dt: f64) {
         let m = &mut self.memory;
         m.t0 = points.t;
         m.done = dt;
@@ -343,23 +340,19 @@ impl GaussRadau {
         m.q0.extend_from_slice(flat(&points.q));
         m.v0.clear();
         m.v0.extend_from_slice(flat(&points.v));
-        m.q0_low.clone_from(&m.q_low);
-        m.v0_low.clone_from(&m.v_low);
+        m.q0_low.clone_from(&m.low.q);
+        m.v0_low.clone_from(&m.low.v);
         for (i, q) in flat_mut(&mut points.q).iter_mut().enumerate() {
             // The long part, v₀·dt, is kept to the last bit; what bends it is added to what that drops.
             let (straight, rest) = two_product(m.v0[i], dt);
-            let bend = dt * (dt * bend_over(i, m.a0[i], &m.b)) + (m.v_low[i] * dt + rest);
-            let (sum, low) = two_sum(*q, straight);
-            (*q, m.q_low[i]) = two_sum(sum, low + (bend + m.q_low[i]));
+            let bend = dt * (dt * bend_over(i, m.a0[i], &m.b)) + (m.low.v[i] * dt + rest);
+            let (sum, dropped) = two_sum(*q, straight);
+            (*q, m.low.q[i]) = two_sum(sum, dropped + (bend + m.low.q[i]));
         }
         for (i, v) in flat_mut(&mut points.v).iter_mut().enumerate() {
-            (*v, m.v_low[i]) = two_sum(*v, dt * gain_over(i, m.a0[i], &m.b) + m.v_low[i]);
+            carry(v, &mut m.low.v[i], dt * gain_over(i, m.a0[i], &m.b));
         }
-        let (t, low) = two_sum(points.t, dt);
-        (points.t, m.t_low) = two_sum(t, low + m.t_low);
-        if points.t == t_end {
-            m.t_low = 0.0;
-        }
+        m.low.pass(points, dt);
     }
 }
 

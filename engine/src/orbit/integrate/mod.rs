@@ -4,15 +4,21 @@
 //! for any time inside the last step (dense output): whoever looks at a path samples it and never changes it.
 //! - [`runge_kutta`]: fixed tables, for powered flight at the tick.
 //! - [`gauss_radau`]: order 15, adaptive, with velocities: the all-rounder for close encounters and odd forces.
+//! - [`dormand_prince`]: explicit pairs of orders 5 and 8, adaptive.
+//! - [`composition`]: symplectic, of fixed step, orders 2 to 8.
+//! - [`wisdom_holman`]: Kepler orbits and kicks, moons in a hierarchy of their own, correctors.
 //! - [`sums`]: additions and products that keep what rounding drops.
 //! - [`series`]: arithmetic of power series, the parts of every Taylor method.
 //!
 //! Not here: what attracts whom ([`super::gravity`]), closed forms ([`super::kepler`]).
 
+pub mod composition;
+pub mod dormand_prince;
 pub mod gauss_radau;
 pub mod runge_kutta;
-pub mod sums;
 pub mod series;
+pub mod sums;
+pub mod wisdom_holman;
 
 use glam::DVec3;
 

@@ -8,6 +8,7 @@
 //! The state is written about the body that dominates (at 30 AU from the Sun an ulp is a millimetre), and rewritten, at the
 //! moment of crossing, about the next one. Not here: the path ahead with burns ([`super::predict`]).
 
+pub mod full;
 pub mod knot;
 pub mod model;
 mod places;

@@ -291,7 +291,7 @@ mod tests {
     fn zonals_are_the_gradient_of_their_potential_along_the_whole_step() {
         let pole = DVec3::new(0.1, -0.2, 1.0).normalize();
         let j = [1.082_6e-3, -2.5e-5, -1.6e-5];
-        let zonal = [j[0] * GM * RADIUS.powi(2), j[1] * GM * RADIUS.powi(3), j[2] * GM * RADIUS.powi(4)];
+        let zonal = [0, 1, 2].map(|k| j[k] * GM * libm::pow(RADIUS, k as f64 + 2.0));
         let mut forces = Forces { gm: GM, zonal, pole: [pole, DVec3::ZERO], ..Forces::default() };
         let (x, unit_s) = run(&mut forces);
         let potential = |p: DVec3| {

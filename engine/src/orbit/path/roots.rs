@@ -105,11 +105,11 @@ fn walk(a: &Scalar, b: &Scalar, low: f64, high: f64, depth: u32, visit: &mut imp
     }
     // de Casteljau at one half: convex combinations only.
     let (mut left, mut right) = (*b, *b);
-    for n in 1..LEN {
+    for (n, first) in left.iter_mut().enumerate().skip(1) {
         for i in 0..LEN - n {
             right[i] = 0.5 * (right[i] + right[i + 1]);
         }
-        left[n] = right[0];
+        *first = right[0];
     }
     let middle = 0.5 * (low + high);
     walk(a, &left, low, middle, depth - 1, visit) || walk(a, &right, middle, high, depth - 1, visit)

@@ -293,6 +293,10 @@ fn forces(model: &Model, places: &dyn Places, field: &Field, knot: &Knot, unit_s
     for p in &field.perturbers[..terms.perturbers] {
         let mut position = [DVec3::ZERO; LEN];
         valid_s = valid_s.min(places.series(p.body, knot.host, knot.at, &mut position));
+        if position[0] == DVec3::ZERO {
+            // An ephemeris that does not know the body.
+            continue;
+        }
         rescale(&mut position, unit_s);
         let gm = p.gm_with_moons(RANGE.1 * distance);
         let taken = if p.body == star { light_m3_s2 } else { 0.0 };

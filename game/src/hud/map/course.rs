@@ -10,7 +10,7 @@ use crate::world::ship::Motion;
 use crate::world::system::System;
 use engine::orbit::elements::Elements;
 use engine::orbit::path::Knot;
-use engine::orbit::predict::{Burn, Engine, Kind, Limits, Prediction, predict};
+use engine::orbit::predict::{Burn, Ending, Engine, Kind, Limits, Prediction, predict};
 use engine::orbit::{BodyId, State};
 use engine::space::{Centred, Vector};
 use engine::time::{Moment, SimTime};
@@ -21,7 +21,7 @@ use std::time::Instant;
 /// A span that is predicted within the frame; longer ones may have to integrate the ephemeris first.
 const AT_ONCE_S: f64 = 3.0 * DAY;
 /// Steps that are taken within the frame.
-const STEPS_AT_ONCE: usize = 2_000;
+const STEPS_AT_ONCE: usize = 300;
 /// Steps of the longest prediction.
 const MOST_STEPS: usize = 60_000;
 /// Longest span of a prediction, s.
@@ -49,7 +49,7 @@ pub struct Ask {
 #[derive(Debug)]
 pub struct Course {
     /// As it is.
-    pub free: Prediction,
+    pub free: Arc<Prediction>,
     /// With the burns, from the first on; none without burns.
     pub planned: Option<Prediction>,
     /// When the planned path leaves the other.
@@ -141,13 +141,13 @@ impl Ask {
         at.plus_s(span_s).next_tick().min(self.system.ephemeris.limits().1)
     }
 
-    /// Predicts, with at most so many steps a path.
-    fn answer(&self, steps: usize) -> Course {
+    /// Predicts, with at most so many steps a path. `free` is the path without burns where that is known already.
+    fn answer(&self, steps: usize, free: Option<Arc<Prediction>>) -> Course {
         let begun = Instant::now();
         let places = &self.system.ephemeris;
         let limits = |until: SimTime| Limits { steps, target: self.target, ..Limits::until(until) };
         let until = self.until(self.knot.host, &self.knot.state(), self.knot.at);
-        let free = predict(&self.system.gravity, places, self.knot, &[], &limits(until));
+        let free = free.unwrap_or_else(|| Arc::new(predict(&self.system.gravity, places, self.knot, &[], &limits(until))));
         let burns = self.burns();
         let (mut planned, mut parts_at) = (None, None);
         let first = burns.iter().map(|b| b.ignition()).min_by(|a, b| a.since(*b).total_cmp(&0.0));
@@ -172,8 +172,9 @@ impl Ask {
             let until = after.map_or(until, |(host, state)| self.until(host, &state, to_last.end())).max(until);
             planned = Some(predict(&self.system.gravity, places, knot, &burns, &limits(until)));
         }
-        let end = if free.end().since(self.knot.at) > 0.0 { free.end() } else { self.knot.at };
-        Course { free, planned, parts_at, span: (self.knot.at, end), cost_ms: begun.elapsed().as_secs_f64() * 1e3 }
+        let begin = free.steps.first().map_or(self.knot.at, |s| s.knot.at);
+        let span = (begin, if free.end().since(begin) > 0.0 { free.end() } else { begin });
+        Course { free, planned, parts_at, span, cost_ms: begun.elapsed().as_secs_f64() * 1e3 }
     }
 }
 
@@ -221,7 +222,11 @@ impl Kept {
         self.hear();
         let fresh = self.course.as_ref().is_some_and(|(q, c)| *q == question && c.holds(world));
         if !fresh {
-            self.make(ctx, ask, question);
+            // A burn that is edited leaves the path as it is without it.
+            let same = |q: &Question| Question { nodes: question.nodes.clone(), spent: question.spent, ..q.clone() } == question;
+            let whole = |c: &Course| c.free.ending != Ending::Steps && c.holds(world);
+            let known = self.course.as_ref().filter(|(q, c)| same(q) && whole(c)).map(|(_, c)| c.free.clone());
+            self.make(ctx, ask, question, known);
         }
         self.course.as_ref().map(|(_, c)| c.clone())
     }
@@ -245,12 +250,12 @@ impl Kept {
         self.made += 1;
     }
 
-    fn make(&mut self, ctx: &egui::Context, ask: Ask, question: Question) {
+    fn make(&mut self, ctx: &egui::Context, ask: Ask, question: Question, free: Option<Arc<Prediction>>) {
         let until = ask.until(ask.knot.host, &ask.knot.state(), ask.knot.at);
         let last_node = ask.nodes.last().map_or(until, |n| n.at).max(until);
         if Moment::from(last_node).since(ask.knot.at) < AT_ONCE_S {
-            let course = ask.answer(STEPS_AT_ONCE);
-            let whole = |p: &Prediction| p.ending != engine::orbit::predict::Ending::Steps;
+            let course = ask.answer(STEPS_AT_ONCE, free.clone());
+            let whole = |p: &Prediction| p.ending != Ending::Steps;
             let complete = whole(&course.free) && course.planned.as_ref().is_none_or(whole);
             self.keep(question.clone(), course);
             if complete {
@@ -264,9 +269,94 @@ impl Kept {
             self.running = Some((question, told));
             std::thread::spawn(move || {
                 // Nobody may be listening any more.
-                _ = tell.send(ask.answer(MOST_STEPS));
+                _ = tell.send(ask.answer(MOST_STEPS, free));
                 ctx.request_repaint();
             });
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::command::{Action, Commands, Guidance};
+    use crate::save::fixture;
+    use engine::time::TICKS_PER_SECOND;
+    use glam::DVec3;
+
+    fn flying() -> World {
+        let mut rigid = fixture::rigid();
+        rigid.rate = Vector::ZERO;
+        fixture::world(Motion::Fly(rigid))
+    }
+
+    fn act(world: &mut World, action: Action) {
+        world.tick(&Commands { actions: vec![action], ..Commands::default() });
+    }
+
+    fn ask(kept: &mut Kept, world: &World, revolutions: u32) -> Arc<Course> {
+        kept.course(&egui::Context::default(), world, revolutions, None).expect("a path")
+    }
+
+    #[test]
+    fn what_the_map_shows_is_what_the_autopilot_flies() {
+        let mut world = flying();
+        let at = world.time.plus(1_500 * TICKS_PER_SECOND);
+        act(&mut world, Action::AddNode(Node::new(at, DVec3::new(300.0, -150.0, 40.0))));
+        act(&mut world, Action::Guidance(Guidance::Node));
+        let course = ask(&mut Kept::default(), &world, 2);
+        assert!(course.parts_at.is_some_and(|p| p.since(at.into()) < 0.0));
+        for _ in 0..60 * 60 * 50 {
+            world.tick(&Commands::default());
+        }
+        assert!(world.ship.nodes.is_empty());
+        let (_, shown) = course.state(world.time.into()).unwrap();
+        let flown = world.rigid().state;
+        // Half a revolution later: the burn itself lasted for seconds and was trimmed to 0.1 mm/s.
+        assert!((shown.position - flown.position).length() < 200.0, "{}", (shown.position - flown.position).length());
+        assert!((shown.velocity - flown.velocity).0.length() < 0.3);
+    }
+
+    #[test]
+    fn nothing_is_computed_while_nothing_changes() {
+        let (mut world, mut kept) = (flying(), Kept::default());
+        let first = ask(&mut kept, &world, 3);
+        for _ in 0..600 {
+            world.tick(&Commands::default());
+            ask(&mut kept, &world, 3);
+        }
+        assert_eq!(kept.made, 1);
+        assert!(Arc::ptr_eq(&first, &ask(&mut kept, &world, 3)));
+        // A burn, another number of revolutions, and a path that has worn off are each predicted anew.
+        act(&mut world, Action::AddNode(Node::new(world.time.plus(90_000), DVec3::X)));
+        assert!(ask(&mut kept, &world, 3).planned.is_some());
+        ask(&mut kept, &world, 1);
+        assert_eq!(kept.made, 3);
+        world.warp_asked = 7;
+        for _ in 0..120 {
+            world.tick(&Commands::default());
+            ask(&mut kept, &world, 1);
+        }
+        assert!((4..12).contains(&kept.made), "{}", kept.made);
+    }
+
+    #[test]
+    fn a_ship_that_stands_has_no_path() {
+        let world = fixture::world(Motion::Landed(fixture::resting()));
+        assert!(Kept::default().course(&egui::Context::default(), &world, 5, None).is_none());
+    }
+
+    #[test]
+    fn a_path_that_is_long_comes_from_a_thread() {
+        let mut kept = Kept::default();
+        let world = flying();
+        let begun = Instant::now();
+        assert!(kept.course(&egui::Context::default(), &world, 100, None).is_none(), "the frame does not wait");
+        while kept.course.is_none() && begun.elapsed().as_secs() < 60 {
+            std::thread::sleep(std::time::Duration::from_millis(5));
+            kept.course(&egui::Context::default(), &world, 100, None);
+        }
+        let course = ask(&mut kept, &world, 100);
+        assert!(course.free.marks.iter().filter(|m| m.kind == Kind::Periapsis).count() >= 99);
     }
 }

@@ -35,11 +35,13 @@ pub struct Edit {
     field: usize,
     /// What was asked for and is not yet in force.
     asked: Option<(usize, Node, u8)>,
+    /// A burn was planned that the World has not heard of: frames to wait for it.
+    awaited: u8,
 }
 
 impl Default for Edit {
     fn default() -> Self {
-        Self { step: 2, field: 0, asked: None }
+        Self { step: 2, field: 0, asked: None, awaited: 0 }
     }
 }
 
@@ -55,6 +57,12 @@ impl Edit {
     /// A burn with what was asked for and is not yet in force.
     pub fn shown(&self, i: usize, node: Node) -> Node {
         self.asked.filter(|a| a.0 == i).map_or(node, |a| a.1)
+    }
+    /// The chosen burn, if there is one, or will be as soon as the World has heard of it.
+    pub fn keeps(&mut self, chosen: Option<usize>, count: usize) -> Option<usize> {
+        let there = chosen.is_some_and(|c| c < count);
+        self.awaited = if there || chosen.is_none() { 0 } else { self.awaited.saturating_sub(1) };
+        chosen.filter(|_| there || self.awaited > 0)
     }
     /// Forgets what is in force by now.
     fn settle(&mut self, world: &World) {
@@ -96,7 +104,7 @@ pub fn add(world: &World, view: &mut MapView, at: SimTime, reply: &mut Reply) {
     }
     reply.actions.push(Action::AddNode(Node { at, dv_mm_s: [0; 3] }));
     view.chosen = Some(world.ship.nodes.partition_point(|n| n.at <= at));
-    view.edit.asked = None;
+    (view.edit.asked, view.edit.awaited) = (None, PATIENCE);
     view.edit.field = 0;
 }
 
@@ -111,9 +119,6 @@ fn somewhere(world: &World, course: &Course, is: impl Fn(Kind) -> bool) -> SimTi
 pub fn show(ctx: &egui::Context, scene: &Scene<'_>, view: &mut MapView, course: &Course, opacity: f32, reply: &mut Reply) {
     let world = scene.world;
     view.edit.settle(world);
-    if view.chosen.is_some_and(|c| c >= world.ship.nodes.len() + usize::from(!reply.actions.is_empty())) {
-        view.chosen = None;
-    }
     keys(ctx, world, view, course, reply);
     area(ctx, "map burns", Align2::RIGHT_TOP, [-12.0, 12.0], |ui| {
         style::panel(opacity).show(ui, |ui| {
@@ -268,11 +273,12 @@ fn number(ui: &mut Ui, on: bool, name: &str, mut act: impl FnMut(&mut Ui, f64)) 
         ui.spacing_mut().item_spacing.x = 4.0;
         let colour = if on { style::ACCENT } else { style::DIM };
         ui.add_sized([62.0, 20.0], egui::Label::new(RichText::new(name).font(style::words(12.5)).color(colour)));
-        if style::toggle(ui, false, " − ").clicked() {
+        let small = |ui: &mut Ui, text: &str| ui.add_sized([26.0, 20.0], egui::Button::new(RichText::new(text).font(style::words(13.0))));
+        if small(ui, "−").clicked() {
             act(ui, -1.0);
         }
         act(ui, 0.0);
-        if style::toggle(ui, false, " + ").clicked() {
+        if small(ui, "+").clicked() {
             act(ui, 1.0);
         }
     });

@@ -17,6 +17,7 @@ pub mod nodes;
 pub mod path;
 pub mod projection;
 
+use super::surface::SurfaceView;
 use super::{Reply, Scene, format, style};
 use crate::command::{Action, Target};
 use crate::world::World;
@@ -51,6 +52,7 @@ pub struct MapView {
     pub chosen: Option<usize>,
     /// The editor's own state.
     pub edit: editor::Edit,
+    globe: SurfaceView,
     kept: Kept,
     lines: Option<(u64, Frame, BodyId, Arc<Lines>)>,
 }
@@ -67,6 +69,7 @@ impl Default for MapView {
             revolutions: 1,
             chosen: None,
             edit: editor::Edit::default(),
+            globe: SurfaceView::default(),
             kept: Kept::default(),
             lines: None,
         }
@@ -116,7 +119,7 @@ pub fn show(ctx: &egui::Context, scene: &Scene<'_>, view: &mut MapView, opacity:
     let sky = Sky::at(&world.system, world.time);
     let course = view.course(ctx, world);
     let lines = course.as_ref().map(|c| view.lines(world, c, rigid.body));
-    view.chosen = view.chosen.filter(|c| *c < world.ship.nodes.len());
+    view.chosen = view.edit.keeps(view.chosen, world.ship.nodes.len());
 
     let screen = ctx.content_rect();
     egui::Area::new(egui::Id::unique("map")).fixed_pos(screen.min).order(egui::Order::Background).fade_in(false).show(ctx, |ui| {
@@ -129,13 +132,15 @@ pub fn show(ctx: &egui::Context, scene: &Scene<'_>, view: &mut MapView, opacity:
             _ => DQuat::IDENTITY,
         };
         let chart = Chart { world, scene, sky: &sky, projection: view.projection(rect), painter: &painter, rect, focus, turn };
+        let globe = world.system.body(focus).relief.is_some() && chart.projection.points(world.system.body(focus).radius_m) > bodies::GLOBE;
+        let picture = if globe { view.globe.picture(ctx, scene, focus) } else { None };
         let mut hits = Vec::new();
         for (i, body) in world.system.bodies.iter().enumerate() {
             let id = BodyId(u16::try_from(i).unwrap_or(0));
             if let Some(parent) = body.parent {
                 bodies::orbit_of(&painter, &chart.projection, world, &sky, id, parent, chart.offset(parent));
             }
-            hits.push((id, bodies::draw_body(&painter, &chart.projection, world, &sky, id, chart.offset(id), scene.name(id), rect)));
+            hits.push((id, bodies::draw_body(&chart, id, picture.filter(|_| id == focus))));
         }
         let mut busy = false;
         let mut on_path = None;
@@ -145,7 +150,7 @@ pub fn show(ctx: &egui::Context, scene: &Scene<'_>, view: &mut MapView, opacity:
             busy = nodes::show(ui, &chart, view, course, lines, &tracks, &mut taken, reply);
             let pointer = response.hover_pos().filter(|_| !busy && !response.dragged());
             let flagged = path::flags(&chart, lines, pointer, &mut taken);
-            on_path = pointer.filter(|_| !flagged).and_then(|p| path::near(&tracks, p, Moment::from(world.time)));
+            on_path = pointer.filter(|_| !flagged).and_then(|p| path::near(&tracks, p, Moment::from(world.time), course.parts_at));
         }
         let ship = chart.projection.at(chart.offset(rigid.body) + rigid.state.position.0);
         painter.circle_filled(ship, 4.0, style::ACCENT);
@@ -249,5 +254,106 @@ impl MapView {
         let towards = DVec3::new(cp * sy, -cp * cy, sp);
         let right = DVec3::new(cy, sy, 0.0);
         Projection { centre: rect.center() + self.pan, scale: self.metres_per_point, right, up: towards.cross(right), towards }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::command::{Guidance, Hold, Node};
+    use crate::hud::testing::{extremes, readout, run, run_at, world};
+    use engine::time::TICKS_PER_SECOND;
+
+    /// A low orbit with two planned burns.
+    fn planned() -> World {
+        let mut world = world();
+        let at = |s: i64| world.time.plus(s * TICKS_PER_SECOND);
+        let nodes = [Node::new(at(1_000), DVec3::new(120.0, 0.0, -3.0)), Node::new(at(4_000), DVec3::new(0.0, 60.0, 0.0))];
+        world.ship.nodes = nodes.to_vec();
+        world
+    }
+
+    fn texts(world: &World, view: &mut MapView, readout: &crate::world::readout::Readout) -> Vec<String> {
+        run(|ctx| show(ctx, &Scene { readout, world, snapshot: None }, view, 0.9, &mut Reply::default()))
+    }
+
+    #[test]
+    fn the_path_its_flags_and_the_burns_are_told_in_every_frame() {
+        let mut world = planned();
+        world.target = Some(Target { body: BodyId(0), spot: None });
+        let views =
+            [Frame::Patched, Frame::Of(View { body: BodyId(1), rotating: true }), Frame::Of(View { body: BodyId(0), rotating: false })];
+        for frame in views {
+            let mut view = MapView { frame, chosen: Some(0), revolutions: 4, ..MapView::default() };
+            let all = texts(&world, &mut view, &readout()).join("|");
+            for word in ["10 revolutions", "with the planned burns", "Fly it", "Warp there", "Prograde", "120.04 m/s", "60.00 m/s", "16:4"]
+            {
+                assert!(all.contains(word), "{frame:?}: `{word}` is not in {all}");
+            }
+            if frame == Frame::Patched {
+                assert!(all.contains("Pe ") && all.contains("Ap ") && all.contains("DN"), "{all}");
+            }
+        }
+        // A frame about a body that there is not falls back.
+        let mut view = MapView { frame: Frame::Of(View { body: BodyId(77), rotating: true }), ..MapView::default() };
+        texts(&world, &mut view, &readout());
+        assert_eq!(view.frame, Frame::Patched);
+    }
+
+    #[test]
+    fn no_readout_and_no_burn_breaks_the_map() {
+        let mut world = planned();
+        world.ship.nodes[1].dv_mm_s = [i32::MAX, i32::MIN, i32::MAX];
+        world.ship.guidance = Guidance::Node;
+        world.ship.hold = Hold::Node;
+        for shown in extremes() {
+            for chosen in [None, Some(0), Some(1), Some(9)] {
+                let mut view = MapView { chosen, ..MapView::default() };
+                for text in texts(&world, &mut view, &shown) {
+                    assert!(
+                        !text.split_whitespace().any(|w| matches!(w.to_ascii_lowercase().as_str(), "nan" | "inf" | "-inf" | "-nan")),
+                        "{text}"
+                    );
+                }
+            }
+        }
+        for (size, scale) in [((1280.0, 720.0), 1.0), ((640.0, 400.0), 2.0), ((2560.0, 1440.0), 1.5)] {
+            let mut view = MapView { chosen: Some(0), ..MapView::default() };
+            let scene = Scene { readout: &readout(), world: &world, snapshot: None };
+            run_at(size, scale, |ctx| show(ctx, &scene, &mut view, 0.9, &mut Reply::default()));
+        }
+    }
+
+    #[test]
+    fn a_burn_is_planned_moved_and_given_up_by_keys() {
+        let mut world = planned();
+        world.ship.nodes.truncate(1);
+        let mut view = MapView::default();
+        let mut press = |view: &mut MapView, key: egui::Key| {
+            let ctx = egui::Context::default();
+            style::apply(&ctx);
+            let mut reply = Reply::default();
+            let event = egui::Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers: egui::Modifiers::NONE };
+            let screen_rect = Some(Rect::from_min_size(egui::Pos2::ZERO, Vec2::new(1280.0, 720.0)));
+            let input = egui::RawInput { screen_rect, events: vec![event], ..Default::default() };
+            let output = ctx.run_ui(input, |ui| {
+                show(ui.ctx(), &Scene { readout: &readout(), world: &world, snapshot: None }, view, 0.9, &mut reply);
+            });
+            output.drop_without_applying_deltas();
+            reply.actions
+        };
+        assert!(matches!(press(&mut view, egui::Key::Insert)[..], [Action::AddNode(Node { dv_mm_s: [0, 0, 0], .. })]));
+        view.chosen = None;
+        press(&mut view, egui::Key::CloseBracket);
+        assert_eq!(view.chosen, Some(0));
+        let more = press(&mut view, egui::Key::ArrowRight);
+        assert!(matches!(more[..], [Action::ChangeNode(0, Node { dv_mm_s: [121_000, 0, -3_000], .. })]), "{more:?}");
+        // What was asked for and is not yet in force is built upon.
+        let more = press(&mut view, egui::Key::Plus);
+        assert!(matches!(more[..], [Action::ChangeNode(0, Node { dv_mm_s: [122_000, 0, -3_000], .. })]), "{more:?}");
+        press(&mut view, egui::Key::ArrowUp);
+        assert!(matches!(press(&mut view, egui::Key::Minus)[..], [Action::ChangeNode(0, Node { dv_mm_s: [122_000, 0, -3_000], .. })]));
+        assert_eq!(press(&mut view, egui::Key::Delete), [Action::DeleteNode(0)]);
+        assert!(!view.editing());
     }
 }

@@ -103,7 +103,7 @@ pub fn show(
         if let Some(p) = response.interact_pointer_pos().filter(|_| response.dragged()) {
             view.chosen = Some(i);
             let (from, to) = editor::room(chart.world, i);
-            let found = tracks.iter().filter(|t| !t.planned || i > 0).filter_map(|t| t.nearest(p, from.into(), to.into()));
+            let found = tracks.iter().filter(|t| t.planned == (i > 0)).filter_map(|t| t.nearest(p, from.into(), to.into()));
             if let Some((_, at, _)) = found.min_by(|a, b| a.0.total_cmp(&b.0)) {
                 editor::change(chart.world, view, i, Node { at: at.next_tick(), ..node }, reply);
             }

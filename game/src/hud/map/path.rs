@@ -17,6 +17,8 @@ pub const PLANNED: Color32 = Color32::from_rgb(92, 190, 255);
 const SPHERE: Color32 = Color32::from_rgb(206, 150, 255);
 /// Crossings of the equator.
 const NODE: Color32 = Color32::from_rgb(150, 214, 150);
+/// Lines nearer to each other than this are one to the pointer, points.
+const SAME: f32 = 4.0;
 /// How near the pointer must be to a line, points.
 const NEAR: f32 = 9.0;
 
@@ -30,21 +32,24 @@ pub struct Track {
 impl Track {
     /// The place nearest to `p` between two moments: how far off, points; when; and where.
     pub fn nearest(&self, p: Pos2, from: Moment, to: Moment) -> Option<(f32, Moment, Pos2)> {
-        let mut best: Option<(f32, Moment, Pos2)> = None;
-        for w in self.points.windows(2) {
+        let parts = self.points.windows(2).filter_map(|w| {
             let ((ta, a, seen_a), (tb, b, seen_b)) = (w[0], w[1]);
             if !(seen_a && seen_b) || tb.since(from) < 0.0 || ta.since(to) > 0.0 {
-                continue;
+                return None;
             }
             let ab = b - a;
             let f = if ab.length_sq() > 1e-6 { ((p - a).dot(ab) / ab.length_sq()).clamp(0.0, 1.0) } else { 0.0 };
             let at = a + ab * f;
-            let off = at.distance(p);
-            if best.is_none_or(|b| off < b.0) {
-                best = Some((off, ta.plus_s(f64::from(f) * tb.since(ta)), at));
-            }
+            Some((at.distance(p), ta.plus_s(f64::from(f) * tb.since(ta)), at))
+        });
+        let parts: Vec<(f32, Moment, Pos2)> = parts.collect();
+        let least = parts.iter().fold(f32::INFINITY, |least, part| least.min(part.0));
+        // Of several revolutions that lie over each other the first.
+        let mut i = parts.iter().position(|part| part.0 <= least + SAME)?;
+        while parts.get(i + 1).is_some_and(|next| next.0 < parts[i].0) {
+            i += 1;
         }
-        best
+        parts.get(i).copied()
     }
 }
 
@@ -73,17 +78,26 @@ pub fn draw(chart: &Chart<'_, '_>, lines: &Lines) -> Vec<Track> {
         }
         let colour = if line.planned { PLANNED } else { FREE };
         let stroke = Stroke::new(1.8, if two && !line.planned { colour.gamma_multiply(0.75) } else { colour });
+        // What lies behind the body is seen through it.
         let mut run: Vec<Pos2> = Vec::new();
-        let end = (Moment::default(), Pos2::ZERO, false);
-        for (_, at, seen) in points.iter().chain(std::iter::once(&end)) {
-            if *seen {
-                run.push(*at);
-            } else if run.len() > 1 {
-                chart.painter.add(Shape::line(std::mem::take(&mut run), stroke));
-            } else {
-                run.clear();
+        let mut shown = true;
+        let put = |run: &mut Vec<Pos2>, shown: bool| {
+            let stroke = if shown { stroke } else { Stroke::new(1.2, stroke.color.gamma_multiply(0.22)) };
+            if run.len() > 1 {
+                chart.painter.add(Shape::line(std::mem::take(run), stroke));
             }
+            run.clear();
+        };
+        for (_, at, seen) in &points {
+            if *seen != shown {
+                let last = run.last().copied();
+                put(&mut run, shown);
+                run.extend(last);
+                shown = *seen;
+            }
+            run.push(*at);
         }
+        put(&mut run, shown);
         tracks.push(Track { planned: line.planned, points });
     }
     tracks
@@ -159,7 +173,9 @@ pub fn flags(chart: &Chart<'_, '_>, lines: &Lines, pointer: Option<Pos2>, taken:
                 hovered = Some((off, flag, at));
             }
         }
-        let kind = (std::mem::discriminant(&flag.mark.kind), flag.planned);
+        // The equator is crossed at much the same place with and without the burns.
+        let both = matches!(flag.mark.kind, Kind::AscendingNode | Kind::DescendingNode);
+        let kind = (std::mem::discriminant(&flag.mark.kind), flag.planned && !both);
         let first = match flag.mark.kind {
             Kind::Closest { distance_m } => distance_m <= nearest,
             _ => !told.contains(&kind),
@@ -219,11 +235,10 @@ pub fn tip(chart: &Chart<'_, '_>, at: Pos2, text: &str) {
     chart.painter.galley(rect.min + Vec2::splat(7.0), galley, style::TEXT);
 }
 
-/// The place on a path that the pointer is near, if it is: when, and where.
-pub fn near(tracks: &[Track], pointer: Pos2, now: Moment) -> Option<(Moment, Pos2)> {
+/// The place on the path with all burns that the pointer is near, if it is: when, and where.
+pub fn near(tracks: &[Track], pointer: Pos2, now: Moment, parts_at: Option<Moment>) -> Option<(Moment, Pos2)> {
     let end = now.plus_s(1e12);
-    let found =
-        tracks.iter().filter_map(|t| t.nearest(pointer, now, end).map(|(off, at, p)| (off - if t.planned { 1.0 } else { 0.0 }, at, p)));
+    let found = tracks.iter().filter_map(|t| t.nearest(pointer, now, if t.planned { end } else { parts_at.unwrap_or(end) }));
     found.filter(|f| f.0 < NEAR).min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, at, p)| (at, p))
 }
 
@@ -242,6 +257,6 @@ mod tests {
         assert!((off - 3.0).abs() < 1e-5 && (t.since(at(5.0))).abs() < 1e-5);
         let (_, t, _) = track.nearest(p(102.0, 25.0), at(0.0), at(99.0)).unwrap();
         assert!(t.since(at(12.5)).abs() < 1e-5);
-        assert!(near(&[track], p(50.0, 40.0), at(0.0)).is_none());
+        assert!(near(&[track], p(50.0, 40.0), at(0.0), None).is_none());
     }
 }

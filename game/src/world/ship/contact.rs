@@ -6,7 +6,7 @@
 //! Not here: thrust, air and attitude control ([`super::flight`]), the mechanics of touching (`engine::rigid`).
 
 use super::flight::{self, Stepped};
-use super::local::{Local, gravity};
+use super::local::{Local, pull};
 use super::recorder::{Pose, Recorder};
 use super::spec::ShipSpec;
 use super::{Effort, Motion, Resting, Rigid, Ship};
@@ -189,9 +189,9 @@ fn touchable(
     };
     let mass = MassProps { mass_kg: stepped.loads.mass_kg, inertia_kg_m2: stepped.loads.inertia_kg_m2 };
     let hull = Hull { chassis, mass, loads, gear_down: ship.gear_down, flown };
-    let gm = frames.local.body.gm_m3_s2;
-    let pull = move |p: Position<Fixed>| gravity(gm, p.0);
-    let place = Place { surface: relief, frame: frames.turning, gravity: &pull };
+    let body = frames.local.body;
+    let weight = move |p: Position<Fixed>| pull(body, DVec3::Z, p.0);
+    let place = Place { surface: relief, frame: frames.turning, gravity: &weight };
     let mut state = start;
     let ground = &mut ship.ground;
     let Ok(report) = ground.bubble.tick(&mut ground.contact, &mut state, &hull, &place, TICK_S) else {

@@ -1,17 +1,20 @@
 //! Flight: one physical tick of 1/60 s for a ship that is integrated. What the pilot or the autopilot asks becomes
 //! [`Controls`], controls become loads, loads move the hull.
 //!
-//! Gravity is that of the dominating body alone; tides of third bodies are left out (stated simplification).
+//! Gravity is that of the coasting ship, by the same choice of terms ([`engine::orbit::field`]): the dominating body as it is
+//! flattened, and, taken once in a tick at its middle, the tides of all other bodies that count and the body's 1PN term.
 //! Translation is Runge–Kutta of order 4 with thrust fixed in the hull (at its attitude half-way through the tick), mass
 //! falling linearly, and gravity and air evaluated at each stage.
 
 use super::attitude::{self, Demand, Plant, Turn};
-use super::local::{self, Local, gravity};
+use super::local::{self, Local, pull};
 use super::{Effort, Rigid, Ship, aero, guidance, thrust};
 use crate::command::{Axes, Guidance, Hold, Target};
 use engine::orbit::State;
-use engine::space::{Position, Rotation, Vector, Velocity};
-use engine::time::TICK_S;
+use engine::orbit::gravity::relativity::schwarzschild;
+use engine::orbit::gravity::tide;
+use engine::space::{Centred, Position, Rotation, Vector, Velocity};
+use engine::time::{Moment, TICK_S};
 use engine::units::DEG;
 use glam::{DQuat, DVec3};
 
@@ -143,8 +146,9 @@ fn follow_hold(ship: &mut Ship, axes: Axes, turn: &Turn) {
 }
 
 /// Moves the centre of mass through one tick.
-fn translate(ship: &Ship, local: &Local, rigid: &Rigid, turn: &Turn, push: thrust::Push) -> State<engine::space::Centred> {
-    let (gm, mass) = (local.body.gm_m3_s2, ship.mass_kg());
+fn translate(ship: &Ship, local: &Local, rigid: &Rigid, turn: &Turn, push: thrust::Push) -> State<Centred> {
+    let (mass, pole) = (ship.mass_kg(), local.icrf_from_fixed.raw(DVec3::Z));
+    let far = far(local);
     let hull: DQuat = turn.mid_attitude;
     let thrust_force = hull * push.force;
     let column = local.body.air.as_ref().map(|a| &a.column);
@@ -157,7 +161,7 @@ fn translate(ship: &Ship, local: &Local, rigid: &Rigid, turn: &Turn, push: thrus
                 force += hull * aero::load(&ship.spec.aero, density, flow, turn.rate).force;
             }
         }
-        gravity(gm, r) + force / (mass - push.flow_kg_s * t)
+        pull(local.body, pole, r) + far + force / (mass - push.flow_kg_s * t)
     };
     let (r0, v0, h) = (rigid.state.position.0, rigid.state.velocity.0, TICK_S);
     let a1 = acceleration(0.0, r0, v0);
@@ -171,6 +175,25 @@ fn translate(ship: &Ship, local: &Local, rigid: &Rigid, turn: &Turn, push: thrus
         position: Position::new(r0 + (v0 + (v2 + v3) * 2.0 + v4) * (h / 6.0)),
         velocity: Velocity::new(v0 + (a1 + (a2 + a3) * 2.0 + a4) * (h / 6.0)),
     }
+}
+
+/// What pulls on the ship besides the dominating body's Newtonian gravity, m/s², half-way through the tick: over a tick it
+/// changes by 1e-5 of itself at most.
+fn far(local: &Local) -> DVec3 {
+    let Some(field) = local.system.gravity.field(local.id) else { return DVec3::ZERO };
+    let middle = Moment { tick: local.time, beyond_s: 0.5 * TICK_S };
+    let here = Position::<Centred>::new(local.r + local.v * (0.5 * TICK_S));
+    let distance = local.r.length();
+    let terms = field.terms(distance, distance);
+    let mut sum = DVec3::ZERO;
+    if terms.relativity {
+        sum += schwarzschild(local.body.gm_m3_s2, here, Velocity::new(local.v)).0;
+    }
+    for p in &field.perturbers[..terms.perturbers] {
+        let place = local.system.ephemeris.relative_at(p.body, local.id, middle).position.0;
+        sum += tide(p.gm_with_moons(distance), Position::new(place), here).0;
+    }
+    sum
 }
 
 /// True when a ship that is sampled or rests must be integrated from now on: something pushes or turns it.

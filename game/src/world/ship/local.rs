@@ -2,8 +2,10 @@
 
 use crate::world::system::{Body, System};
 use engine::air::density::Sample;
+use engine::orbit::gravity::point_mass;
+use engine::orbit::gravity::zonal::zonal;
 use engine::orbit::{BodyId, State};
-use engine::space::{Centred, Fixed, Icrf, Rotation};
+use engine::space::{Centred, Fixed, Icrf, Position, Rotation};
 use engine::time::SimTime;
 use glam::DVec3;
 
@@ -66,9 +68,9 @@ impl<'a> Local<'a> {
     pub fn ground_m(&self) -> f64 {
         ground_m(self.body, self.direction_fixed())
     }
-    /// Acceleration by the body's gravity, m/s².
+    /// Acceleration by the body's gravity, flattened as it is, m/s².
     pub fn gravity(&self) -> DVec3 {
-        gravity(self.body.gm_m3_s2, self.r)
+        pull(self.body, self.icrf_from_fixed.raw(DVec3::Z), self.r)
     }
     /// Rate of climb, m/s.
     pub fn vertical_m_s(&self) -> f64 {
@@ -80,10 +82,12 @@ impl<'a> Local<'a> {
     }
 }
 
-/// Acceleration at `r` by a point mass at the origin, m/s²; zero at the origin itself.
-pub fn gravity(gm: f64, r: DVec3) -> DVec3 {
-    let d2 = r.length_squared();
-    if d2 > 0.0 { r * (-gm / (d2 * d2.sqrt())) } else { DVec3::ZERO }
+/// Acceleration at `r` from a body's centre by its gravity with its zonal terms, m/s²; zero at the centre itself. `pole` is the
+/// unit vector of its pole in the axes of `r`.
+pub fn pull(body: &Body, pole: DVec3, r: DVec3) -> DVec3 {
+    let (gm, at) = (body.gm_m3_s2, Position::<Centred>::new(r));
+    let flat = body.figure.as_ref().map_or(DVec3::ZERO, |f| zonal(gm, f.zonal, f.radius_m, pole, at).0);
+    point_mass(gm, at).0 + flat
 }
 
 /// Height of what one stands or splashes on, above the datum, m; 0 for a body without ground.

@@ -6,6 +6,7 @@
 pub mod aero;
 pub mod attitude;
 pub mod contact;
+pub mod course;
 pub mod flight;
 pub mod guidance;
 pub mod local;
@@ -16,7 +17,7 @@ pub mod thrust;
 pub mod warp;
 
 use crate::command::{Guidance, Hold, Node};
-use engine::orbit::arc::Arc as OrbitArc;
+use engine::orbit::path::Path;
 use engine::orbit::{BodyId, State};
 use engine::space::{Centred, Fixed, Hull, Icrf, Position, Rotation, Vector};
 use engine::time::SimTime;
@@ -24,7 +25,7 @@ use glam::{DQuat, DVec3};
 use guidance::{Burn, Landing};
 use spec::ShipSpec;
 use std::sync::Arc;
-use warp::Wake;
+use warp::Ahead;
 
 /// A ship.
 #[derive(Clone, Debug)]
@@ -73,9 +74,9 @@ pub struct Effort {
 }
 
 /// How the ship moves. The variant decides which subsystems run at all.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Motion {
-    /// No force but gravity: sampled from an arc at each tick, never stepped.
+    /// No force but gravity: its path is sampled at each tick, never stepped by one.
     Coast(Coast),
     /// Thrust, air or turning: integrated at 60 Hz.
     Fly(Rigid),
@@ -101,22 +102,31 @@ pub struct Rigid {
 }
 
 /// A coasting ship: path and attitude as functions of time.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Coast {
-    /// The path.
-    pub arc: OrbitArc,
+    /// The path; its present step says where the ship is now.
+    pub path: Path,
     /// The attitude.
     pub attitude: CoastAttitude,
-    /// When the path must be looked at again, and why.
-    pub wake: Wake,
+    /// Since when.
+    pub since: SimTime,
+    /// What the path comes to, as far as it has been followed ahead.
+    pub ahead: Ahead,
+}
+
+impl Coast {
+    /// A ship that coasts on `path` from now on.
+    pub fn new(path: Path, attitude: CoastAttitude, since: SimTime) -> Self {
+        Self { path, attitude, since, ahead: Ahead::default() }
+    }
 }
 
 /// Attitude of a coasting ship, a pure function of the sampled state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum CoastAttitude {
-    /// Turning at a constant rate since the arc's epoch (inertial coupling is left out while coasting).
+    /// Turning at a constant rate since coasting began (inertial coupling is left out while coasting).
     Inertial {
-        /// ICRF from hull at the epoch.
+        /// ICRF from hull then.
         icrf_from_hull: DQuat,
         /// Angular velocity in hull axes, rad/s.
         rate: DVec3,
@@ -176,8 +186,8 @@ impl Ship {
     }
     /// The dominating body.
     pub fn body(&self) -> BodyId {
-        match self.motion {
-            Motion::Coast(c) => c.arc.body,
+        match &self.motion {
+            Motion::Coast(c) => c.path.host(),
             Motion::Fly(r) | Motion::Contact(r) => r.body,
             Motion::Landed(r) | Motion::Crashed(r) => r.body,
         }

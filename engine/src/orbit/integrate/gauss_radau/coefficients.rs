@@ -170,6 +170,7 @@ mod tests {
     }
 
     #[test]
+    #[allow(clippy::needless_range_loop, reason = "a product of matrices")]
     fn the_two_bases_are_each_other_s_inverse() {
         for j in 0..TERMS {
             for k in 0..TERMS {

@@ -10,6 +10,7 @@
 //! Air helps: what it does already is taken off the push.
 
 use super::super::attitude::Demand;
+use super::super::course::Course;
 use super::super::flight::Controls;
 use super::super::local::{Local, ground_m};
 use super::super::warp::floor_m;
@@ -17,7 +18,6 @@ use super::super::{Rigid, Ship};
 use super::plan::{lead_s, thin_above_m, ticks};
 use super::{fly_along, weight};
 use crate::command::Target;
-use engine::orbit::arc::Arc;
 use engine::orbit::{BodyId, State};
 use engine::space::{Position, Velocity};
 use engine::time::SimTime;
@@ -133,13 +133,14 @@ impl Landing {
     /// When constant deceleration must begin on a coasting path from here, less the time to turn.
     fn braking_time(&self, ship: &Ship, local: &Local) -> SimTime {
         let state = State { position: Position::new(local.r), velocity: Velocity::new(local.v) };
-        let arc = Arc { body: local.id, gm_m3_s2: local.body.gm_m3_s2, epoch: local.time, state };
+        let mut course = Course::new(local.system, local.time, local.id, &state);
         let planned = braking_m_s2(ship);
         let mut after_s = 0.0;
         let lead = lead_s(ship);
         while after_s < 2e5 {
             let time = local.time.plus(ticks(after_s));
-            let there = Local::new(local.system, time, local.id, &arc.sample(time));
+            let Some(state) = course.at(time) else { break };
+            let there = Local::new(local.system, time, local.id, &state);
             let way = self.way(&there);
             let needed = way.closing * way.closing / (2.0 * (way.distance_m - SHORT_M).max(1.0));
             if (way.closing > 0.0 && needed > planned) || there.altitude_m < self.gate_m {
@@ -178,7 +179,7 @@ fn idle() -> Controls {
 impl Landing {
     fn burn(&mut self, ship: &Ship, local: &Local, rigid: &Rigid) -> Controls {
         self.phase = Phase::Burn;
-        let shot = self.shot(local.body, local.time, local.r, local.r.cross(local.v));
+        let shot = self.true_shot(local, local.r.cross(local.v));
         let to_gain = shot.map_or(DVec3::ZERO, |s| s.velocity - local.v);
         let roof = rigid.icrf_from_hull.0 * DVec3::Y;
         let near = to_gain.length() < 3.0;

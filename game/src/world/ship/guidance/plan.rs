@@ -5,8 +5,12 @@
 //! backwards it is the ballistic range problem: with `Q = v₂² r₂/μ`,
 //! `Q = (1 − cos θ) / (cos²φ (r₂/r₁ − cos(θ+φ)/cos φ))` [Bate, Mueller & White 1971, §6.2]. The flight time moves the spot (the
 //! body turns), so both are iterated; four rounds settle to metres.
+//!
+//! That arc is a conic. Flown under the forces that there are (a flattened body bends it by tens of kilometres), it misses; so
+//! the arc that is flown aims beside the spot by what the one before it missed by, taken from the path ahead ([`Course`]).
 
 use super::super::attitude::spot_direction;
+use super::super::course::Course;
 use super::super::local::{Local, ground_m};
 use super::super::warp::floor_m;
 use super::landing::{Landing, Phase};
@@ -14,8 +18,7 @@ use crate::command::Target;
 use crate::world::ship::Ship;
 use crate::world::system::Body;
 use core::f64::consts::{PI, TAU};
-use engine::orbit::State;
-use engine::orbit::arc::Arc;
+use engine::orbit::{State, kepler};
 use engine::space::{Centred, Position, Velocity, sphere};
 use engine::time::{SimTime, TICK_S};
 use engine::units::{DAY, DEG, HOUR, KM};
@@ -89,15 +92,34 @@ impl Landing {
         thin_above_m(body, THIN_KG_M3).max(self.gate_m + (8.0 * KM).min(0.2 * body.radius_m))
     }
 
-    /// The arc from `r` (with orbit normal `normal`) to the spot, if there is one.
-    pub fn shot(&self, body: &Body, time: SimTime, r: DVec3, normal: DVec3) -> Option<Shot> {
+    /// The arc from the ship to the spot, as it will be flown: two rounds leave a few metres of tens of kilometres.
+    pub fn true_shot(&self, local: &Local, normal: DVec3) -> Option<Shot> {
+        let mut aside = DVec3::ZERO;
+        let mut shot = self.shot(local.body, local.time, local.r, normal, aside)?;
+        for _ in 0..2 {
+            let state = State::<Centred> { position: Position::new(local.r), velocity: Velocity::new(shot.velocity) };
+            let arrival = local.time.plus(ticks(shot.flight_s));
+            // An arc that does not get there tells nothing about what it misses by.
+            let Some(there) = Course::new(local.system, local.time, local.id, &state).at(arrival) else { break };
+            let conic = kepler::propagate(local.body.gm_m3_s2, &state, arrival.since(local.time));
+            aside = -(there.position - conic.position).0;
+            let Some(better) = self.shot(local.body, local.time, local.r, normal, aside) else { break };
+            shot = better;
+        }
+        Some(shot)
+    }
+
+    /// The conic from `r` (with orbit normal `normal`) to a point `aside` (m, ICRF axes) of the spot, if there is one.
+    pub fn shot(&self, body: &Body, time: SimTime, r: DVec3, normal: DVec3, aside: DVec3) -> Option<Shot> {
         let gm = body.gm_m3_s2;
-        let (r1, r2) = (r.length(), body.radius_m + self.pass_m(body));
+        let (r1, height) = (r.length(), body.radius_m + self.pass_m(body));
         let from = r / r1;
         let mut flight_s = 0.0;
         let mut velocity = DVec3::ZERO;
         for _ in 0..5 {
-            let to = body.spin.icrf_from_fixed(time.plus(ticks(flight_s))).raw(self.spot);
+            let aim = body.spin.icrf_from_fixed(time.plus(ticks(flight_s))).raw(self.spot) * height + aside;
+            let r2 = aim.length();
+            let to = aim / r2;
             let cross = from.cross(to);
             let n = (if cross.dot(normal) < 0.0 { -cross } else { cross }).normalize_or(normal.normalize_or(DVec3::Z));
             let mut theta = libm::atan2(cross.length(), from.dot(to));
@@ -144,7 +166,7 @@ impl Landing {
     fn best_burn(&self, ship: &Ship, local: &Local) -> Option<(f64, SimTime)> {
         let gm = local.body.gm_m3_s2;
         let state = State::<Centred> { position: Position::new(local.r), velocity: Velocity::new(local.v) };
-        let arc = Arc { body: local.id, gm_m3_s2: gm, epoch: local.time, state };
+        let mut course = Course::new(local.system, local.time, local.id, &state);
         let a = 1.0 / (2.0 / local.r.length() - local.v.length_squared() / gm);
         let closed = a > 0.0 && a.is_finite();
         let period = if closed { TAU * (a * a * a / gm).sqrt() } else { 2.0 * HOUR };
@@ -156,11 +178,11 @@ impl Landing {
         let mut wait = lead_s(ship) + 5.0;
         while wait < horizon {
             let at = local.time.plus(ticks(wait));
-            let s = arc.sample(at);
+            let Some(s) = course.at(at) else { break };
             if s.position.0.length() < floor {
                 break;
             }
-            if let Some(shot) = self.shot(local.body, at, s.position.0, s.position.0.cross(s.velocity.0)) {
+            if let Some(shot) = self.shot(local.body, at, s.position.0, s.position.0.cross(s.velocity.0), DVec3::ZERO) {
                 let change = (shot.velocity - s.velocity.0).length();
                 let cost = change + price * (wait + shot.flight_s);
                 if best.is_none_or(|b| cost < b.0) {
