@@ -27,7 +27,7 @@ pub fn orbit_of(painter: &Painter, projection: &Projection, world: &World, sky: 
     let Some(conic) = Conic::new(gm, &state).filter(|c| c.e < 1.0) else { return };
     let fade = ((size - 6.0) / 40.0).clamp(0.15, 1.0);
     let colour = Color32::from_rgb(70, 92, 116).gamma_multiply(fade);
-    let points = conic.ahead_of_now(160, 0.0).into_iter().map(|a| projection.at(centre + conic.point(a))).collect();
+    let points = conic.around(160).into_iter().map(|a| projection.at(centre + conic.point(a))).collect();
     painter.add(Shape::line(points, Stroke::new(1.0, colour)));
 }
 
@@ -82,7 +82,7 @@ fn globe(at: Pos2, radius: f32, light: DVec3, picture: TextureId, p: &Projection
         let n = DVec3::new(rho * c, rho * s, (1.0 - rho * rho).max(0.0).sqrt());
         let (lat, lon) = sphere::lat_lon_of(right * n.x + up * n.y + towards * n.z);
         // A soft terminator, and a night in which the ground can still be made out.
-        let lit = narrow(0.16 + 0.95 * (n.dot(light) * 1.6 + 0.12).clamp(0.0, 1.0));
+        let lit = narrow(0.3 + 0.8 * (n.dot(light) * 1.6 + 0.12).clamp(0.0, 1.0));
         let place = at + Vec2::new(narrow(n.x), -narrow(n.y)) * radius;
         (place, Pos2::new(narrow(lon / TAU + 0.5), narrow(0.5 - lat / PI)), Rgba::from_gray(lit.min(1.0) * lit.min(1.0)).into())
     };

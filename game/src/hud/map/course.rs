@@ -18,7 +18,7 @@ use engine::units::DAY;
 use std::sync::{Arc, mpsc};
 use std::time::Instant;
 
-/// A span that is predicted within the frame; longer ones may have to integrate the ephemeris first.
+/// A span that is predicted within the frame; for longer ones the ephemeris may have to be integrated first.
 const AT_ONCE_S: f64 = 3.0 * DAY;
 /// Steps that are taken within the frame.
 const STEPS_AT_ONCE: usize = 300;
@@ -56,6 +56,8 @@ pub struct Course {
     pub parts_at: Option<Moment>,
     /// Where it begins and ends.
     span: (Moment, Moment),
+    /// As far as was asked.
+    whole: bool,
     /// What it took, ms.
     pub cost_ms: f64,
 }
@@ -75,6 +77,8 @@ struct Question {
 pub struct Kept {
     course: Option<(Question, Arc<Course>)>,
     running: Option<(Question, mpsc::Receiver<Course>)>,
+    /// From when to when the places of the bodies have been asked for, and are at hand.
+    at_hand: Option<(SimTime, SimTime)>,
     /// Courses made so far: lines follow when it changes.
     pub made: u64,
 }
@@ -141,19 +145,28 @@ impl Ask {
         at.plus_s(span_s).next_tick().min(self.system.ephemeris.limits().1)
     }
 
-    /// Predicts, with at most so many steps a path. `free` is the path without burns where that is known already.
-    fn answer(&self, steps: usize, free: Option<Arc<Prediction>>) -> Course {
+    /// Predicts, with at most so many steps a path and not beyond a tick. `free` is the path without burns where that is known
+    /// already.
+    fn answer(&self, steps: usize, horizon: SimTime, free: Option<Arc<Prediction>>) -> Course {
         let begun = Instant::now();
         let places = &self.system.ephemeris;
-        let limits = |until: SimTime| Limits { steps, target: self.target, ..Limits::until(until) };
+        let limits = |until: SimTime| Limits { steps, target: self.target, ..Limits::until(until.min(horizon)) };
+        let mut whole = true;
+        let mut note = |path: &Prediction, until: SimTime| {
+            whole &= path.ending != Ending::Steps && (path.ending == Ending::Impact || until <= horizon)
+        };
         let until = self.until(self.knot.host, &self.knot.state(), self.knot.at);
         let free = free.unwrap_or_else(|| Arc::new(predict(&self.system.gravity, places, self.knot, &[], &limits(until))));
+        note(&free, until);
         let burns = self.burns();
         let (mut planned, mut parts_at) = (None, None);
         let first = burns.iter().map(|b| b.ignition()).min_by(|a, b| a.since(*b).total_cmp(&0.0));
         if let (None, Some(to_gain)) = (first, self.to_gain) {
             let knot = self.knot.kicked(to_gain);
-            planned = Some(predict(&self.system.gravity, places, knot, &[], &limits(self.until(knot.host, &knot.state(), knot.at))));
+            let until = self.until(knot.host, &knot.state(), knot.at);
+            let path = predict(&self.system.gravity, places, knot, &[], &limits(until));
+            note(&path, until);
+            planned = Some(path);
             parts_at = Some(self.knot.at);
         } else if let Some(first) = first {
             // From the step in which the first burn begins, or from where the other path ends.
@@ -170,11 +183,13 @@ impl Ask {
             let to_last = predict(&self.system.gravity, places, knot, &burns, &limits(last.next_tick()));
             let after = to_last.state(to_last.end());
             let until = after.map_or(until, |(host, state)| self.until(host, &state, to_last.end())).max(until);
-            planned = Some(predict(&self.system.gravity, places, knot, &burns, &limits(until)));
+            let path = predict(&self.system.gravity, places, knot, &burns, &limits(until));
+            note(&path, until);
+            planned = Some(path);
         }
         let begin = free.steps.first().map_or(self.knot.at, |s| s.knot.at);
         let span = (begin, if free.end().since(begin) > 0.0 { free.end() } else { begin });
-        Course { free, planned, parts_at, span, cost_ms: begun.elapsed().as_secs_f64() * 1e3 }
+        Course { free, planned, parts_at, span, whole, cost_ms: begun.elapsed().as_secs_f64() * 1e3 }
     }
 }
 
@@ -224,8 +239,7 @@ impl Kept {
         if !fresh {
             // A burn that is edited leaves the path as it is without it.
             let same = |q: &Question| Question { nodes: question.nodes.clone(), spent: question.spent, ..q.clone() } == question;
-            let whole = |c: &Course| c.free.ending != Ending::Steps && c.holds(world);
-            let known = self.course.as_ref().filter(|(q, c)| same(q) && whole(c)).map(|(_, c)| c.free.clone());
+            let known = self.course.as_ref().filter(|(q, c)| same(q) && c.whole && c.holds(world)).map(|(_, c)| c.free.clone());
             self.make(ctx, ask, question, known);
         }
         self.course.as_ref().map(|(_, c)| c.clone())
@@ -246,21 +260,23 @@ impl Kept {
 
     fn keep(&mut self, question: Question, course: Course) {
         tracing::debug!("path ahead: {:.1} ms, {} steps", course.cost_ms, course.free.steps.len());
+        let ends = [Some(&*course.free), course.planned.as_ref()].into_iter().flatten().map(|p| p.end().tick);
+        let begin = course.span.0.tick;
+        let (from, to) = self.at_hand.filter(|(from, to)| *from <= begin && begin <= *to).unwrap_or((begin, begin));
+        self.at_hand = Some((from, ends.fold(to, SimTime::max)));
         self.course = Some((question, Arc::new(course)));
         self.made += 1;
     }
 
     fn make(&mut self, ctx: &egui::Context, ask: Ask, question: Question, free: Option<Arc<Prediction>>) {
-        let until = ask.until(ask.knot.host, &ask.knot.state(), ask.knot.at);
-        let last_node = ask.nodes.last().map_or(until, |n| n.at).max(until);
-        if Moment::from(last_node).since(ask.knot.at) < AT_ONCE_S {
-            let course = ask.answer(STEPS_AT_ONCE, free.clone());
-            let whole = |p: &Prediction| p.ending != Ending::Steps;
-            let complete = whole(&course.free) && course.planned.as_ref().is_none_or(whole);
-            self.keep(question.clone(), course);
-            if complete {
-                return;
-            }
+        let now = ask.knot.at.tick;
+        let at_hand = self.at_hand.filter(|(from, _)| *from <= now).map_or(now, |(_, to)| to);
+        let horizon = ask.knot.at.plus_s(AT_ONCE_S).tick.max(at_hand);
+        let course = ask.answer(STEPS_AT_ONCE, horizon, free.clone());
+        let whole = course.whole;
+        self.keep(question.clone(), course);
+        if whole {
+            return;
         }
         // One at a time: what changed meanwhile is asked for when it is done.
         if self.running.is_none() {
@@ -269,7 +285,7 @@ impl Kept {
             self.running = Some((question, told));
             std::thread::spawn(move || {
                 // Nobody may be listening any more.
-                _ = tell.send(ask.answer(MOST_STEPS, free));
+                _ = tell.send(ask.answer(MOST_STEPS, SimTime::from_ticks(i64::MAX), free));
                 ctx.request_repaint();
             });
         }
@@ -328,7 +344,8 @@ mod tests {
         assert_eq!(kept.made, 1);
         assert!(Arc::ptr_eq(&first, &ask(&mut kept, &world, 3)));
         // A burn, another number of revolutions, and a path that has worn off are each predicted anew.
-        act(&mut world, Action::AddNode(Node::new(world.time.plus(90_000), DVec3::X)));
+        let node = Node::new(world.time.plus(90_000), DVec3::X);
+        act(&mut world, Action::AddNode(node));
         assert!(ask(&mut kept, &world, 3).planned.is_some());
         ask(&mut kept, &world, 1);
         assert_eq!(kept.made, 3);
@@ -351,8 +368,9 @@ mod tests {
         let mut kept = Kept::default();
         let world = flying();
         let begun = Instant::now();
-        assert!(kept.course(&egui::Context::default(), &world, 100, None).is_none(), "the frame does not wait");
-        while kept.course.is_none() && begun.elapsed().as_secs() < 60 {
+        let first = ask(&mut kept, &world, 100);
+        assert!(!first.whole, "the frame does not wait for all of it");
+        while kept.course.as_ref().is_some_and(|(_, c)| !c.whole) && begun.elapsed().as_secs() < 60 {
             std::thread::sleep(std::time::Duration::from_millis(5));
             kept.course(&egui::Context::default(), &world, 100, None);
         }

@@ -173,7 +173,7 @@ fn chosen(ui: &mut Ui, scene: &Scene<'_>, view: &mut MapView, i: usize, reply: &
         number(ui, view.edit.field == k, name, |ui, sign| {
             if sign == 0.0 {
                 let value = egui::DragValue::new(&mut parts[k]).speed(0.2 * step).max_decimals(3).range(-2.0e6..=2.0e6).suffix(" m/s");
-                if ui.add_sized([96.0, 20.0], value).has_focus() {
+                if ui.add_sized([96.0, 22.0], value).has_focus() {
                     view.edit.field = k;
                 }
             } else {
@@ -186,7 +186,7 @@ fn chosen(ui: &mut Ui, scene: &Scene<'_>, view: &mut MapView, i: usize, reply: &
         if sign == 0.0 {
             let text = format!("in {}", format::duration(node.at.since(world.time)));
             let label = egui::Label::new(RichText::new(text).font(style::mono(12.5)));
-            ui.add_sized([96.0, 20.0], label).on_hover_text(node.at.utc().to_string());
+            ui.add_sized([96.0, 22.0], label).on_hover_text(node.at.utc().to_string());
         } else {
             later_s += sign * view.edit.step_s() * finer;
             view.edit.field = 3;
@@ -269,11 +269,11 @@ fn duration(s: f64) -> String {
 
 /// A row: name, less, value, more. `act` is called with −1 or 1 when one was pressed, and with 0 to show the value.
 fn number(ui: &mut Ui, on: bool, name: &str, mut act: impl FnMut(&mut Ui, f64)) {
-    ui.horizontal(|ui| {
+    ui.allocate_ui_with_layout(egui::vec2(WIDTH, 24.0), egui::Layout::left_to_right(egui::Align::Center), |ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
         let colour = if on { style::ACCENT } else { style::DIM };
-        ui.add_sized([62.0, 20.0], egui::Label::new(RichText::new(name).font(style::words(12.5)).color(colour)));
-        let small = |ui: &mut Ui, text: &str| ui.add_sized([26.0, 20.0], egui::Button::new(RichText::new(text).font(style::words(13.0))));
+        ui.add_sized([62.0, 22.0], egui::Label::new(RichText::new(name).font(style::words(12.5)).color(colour)));
+        let small = |ui: &mut Ui, text: &str| ui.add_sized([26.0, 22.0], egui::Button::new(RichText::new(text).font(style::words(13.0))));
         if small(ui, "−").clicked() {
             act(ui, -1.0);
         }

@@ -329,7 +329,7 @@ mod tests {
         let mut world = planned();
         world.ship.nodes.truncate(1);
         let mut view = MapView::default();
-        let mut press = |view: &mut MapView, key: egui::Key| {
+        let press = |view: &mut MapView, key: egui::Key| {
             let ctx = egui::Context::default();
             style::apply(&ctx);
             let mut reply = Reply::default();
