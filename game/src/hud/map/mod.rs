@@ -273,7 +273,20 @@ mod tests {
         world
     }
 
+    /// Waits for the thread that predicts.
+    fn settle(world: &World, view: &mut MapView) {
+        let ctx = egui::Context::default();
+        for _ in 0..20_000 {
+            if view.course(&ctx, world).is_some_and(|c| c.is_whole()) {
+                return;
+            }
+            std::thread::sleep(std::time::Duration::from_millis(1));
+        }
+        panic!("no course");
+    }
+
     fn texts(world: &World, view: &mut MapView, readout: &crate::world::readout::Readout) -> Vec<String> {
+        settle(world, view);
         run(|ctx| show(ctx, &Scene { readout, world, snapshot: None }, view, 0.9, &mut Reply::default()))
     }
 
@@ -319,6 +332,7 @@ mod tests {
         }
         for (size, scale) in [((1280.0, 720.0), 1.0), ((640.0, 400.0), 2.0), ((2560.0, 1440.0), 1.5)] {
             let mut view = MapView { chosen: Some(0), ..MapView::default() };
+            settle(&world, &mut view);
             let scene = Scene { readout: &readout(), world: &world, snapshot: None };
             run_at(size, scale, |ctx| show(ctx, &scene, &mut view, 0.9, &mut Reply::default()));
         }
@@ -330,6 +344,7 @@ mod tests {
         world.ship.nodes.truncate(1);
         let mut view = MapView::default();
         let press = |view: &mut MapView, key: egui::Key| {
+            settle(&world, view);
             let ctx = egui::Context::default();
             style::apply(&ctx);
             let mut reply = Reply::default();
