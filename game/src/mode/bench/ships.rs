@@ -5,11 +5,10 @@
 //! every term about one body, ends from it: what is the method's and not the choice's. CPU time is the least of several runs.
 
 use super::orbit_rows;
-use crate::cli::Places;
+use crate::cli::BenchShipsArgs;
 use crate::mode::Error;
 use crate::mode::stage::Stage;
 use crate::world::system::System;
-use clap::Args;
 use cpu_time::ProcessTime;
 use engine::orbit::field::Bound;
 use engine::orbit::integrate::Points;
@@ -22,21 +21,6 @@ use engine::time::SimTime;
 use engine::units::{AU, DAY, DEG, KM};
 use glam::DVec3;
 use serde::Serialize;
-use std::path::PathBuf;
-
-/// Arguments of `bench ships`.
-#[derive(Clone, Debug, Args)]
-pub struct BenchShipsArgs {
-    /// Write the rows here instead of stdout
-    #[arg(long, value_name = "F.json")]
-    pub json: Option<PathBuf>,
-    /// The system, a folder of assets/systems
-    #[arg(long, value_name = "NAME", default_value = "sol")]
-    pub system: String,
-    #[command(flatten)]
-    /// Folders.
-    pub places: Places,
-}
 
 /// Periapsis distance, eccentricity and inclination about a body of the system.
 const SHIPS: [(&str, &str, f64, f64, f64); 8] = [
