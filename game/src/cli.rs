@@ -3,6 +3,12 @@
 //! Every argument is checked here as far as it can be without opening a file; what it names is opened by the mode
 //! ([`crate::mode`]). Exit codes: 0 done, 1 an error, 2 wrong usage or no GPU, 3 a replay diverged.
 
+mod bench;
+mod eclipses;
+
+pub use bench::BenchOrbitArgs;
+pub use eclipses::ProbeEclipsesArgs;
+
 use clap::{Args, Parser, Subcommand};
 use engine::time::SimTime;
 use std::ffi::OsString;
@@ -231,6 +237,10 @@ pub enum Probe {
         after_help = "Example:\n  syzygy probe propagate --case tests/reference/orbit_cases.json --name LEO_1000orb --method gauss_radau --tol 1e-9"
     )]
     Propagate(ProbePropagateArgs),
+    /// Eclipses on a body by another: when, what kind, where, and what one place sees
+    #[command(after_help = "Example:\n  syzygy probe eclipses --on earth --by moon --from 2461000 --to 2461500 --at 43.37,-8.40\n  \
+        syzygy probe eclipses --on moon --by earth --from 2461000 --to 2462000")]
+    Eclipses(ProbeEclipsesArgs),
 }
 
 /// What can be measured.
@@ -340,35 +350,6 @@ pub struct ProbePropagateArgs {
     pub common: ProbeCommon,
 }
 
-/// Arguments of `bench orbit`.
-#[derive(Clone, Debug, Args)]
-pub struct BenchOrbitArgs {
-    /// Write the rows here instead of stdout
-    #[arg(long, value_name = "F.json")]
-    pub json: Option<PathBuf>,
-    /// Draw error against CPU time and evaluations, a picture a case, into this folder
-    #[arg(long, value_name = "DIR")]
-    pub plot: Option<PathBuf>,
-    /// Rows of other programs, measured on this machine (tests/peers), to draw beside
-    #[arg(long, value_name = "F.json")]
-    pub peers: Option<PathBuf>,
-    /// Only these cases; several may be named, `NAME@T` ends at a reference time
-    #[arg(long, value_name = "NAME")]
-    pub case: Vec<String>,
-    /// Only these integrators
-    #[arg(long, value_name = "M")]
-    pub method: Vec<String>,
-    /// Evaluations of the force after which a method of fixed step is not refined further
-    #[arg(long, value_name = "N", default_value_t = 2_000_000, value_parser = clap::value_parser!(u64).range(1..))]
-    pub most: u64,
-    /// Stress the integrators instead: long spans, spikes of the step, scales, near collisions
-    #[arg(long)]
-    pub stress: bool,
-    #[command(flatten)]
-    /// Folders.
-    pub places: Places,
-}
-
 /// Parses the command line. On `--help` and on wrong usage the text is printed and the exit code given back.
 ///
 /// # Errors
@@ -427,77 +408,4 @@ impl ShotArgs {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use clap::CommandFactory;
-
-    fn cli(words: &[&str]) -> Result<Cli, clap::Error> {
-        Cli::try_parse_from(std::iter::once("syzygy").chain(words.iter().copied()))
-    }
-
-    #[test]
-    fn the_words_hang_together() {
-        Cli::command().debug_assert();
-    }
-
-    #[test]
-    fn every_subcommand_shows_an_example() {
-        fn walk(command: &mut clap::Command, path: &str) {
-            let help = command.render_long_help().to_string();
-            assert!(path.ends_with("help") || help.contains("Example"), "{path}: {help}");
-            // What an example says is taken by the program, and the starts that it names are there.
-            for line in help.lines().filter(|l| l.starts_with("  syzygy ")) {
-                let words: Vec<&str> = line.split("    ").next().unwrap_or(line).split_whitespace().skip(1).collect();
-                cli(&words).unwrap_or_else(|e| panic!("{line}: {e}"));
-                for pair in words.windows(2).filter(|pair| pair[0] == "--start") {
-                    let start = format!("{}/../assets/starts/{}.toml", env!("CARGO_MANIFEST_DIR"), pair[1]);
-                    assert!(std::path::Path::new(&start).is_file(), "{line}: no start `{}`", pair[1]);
-                }
-            }
-            for sub in command.get_subcommands_mut() {
-                let path = format!("{path} {}", sub.get_name());
-                walk(sub, &path);
-            }
-        }
-        walk(&mut Cli::command(), "syzygy");
-    }
-
-    #[test]
-    fn play_is_what_happens_when_nothing_is_named() {
-        let bare = cli(&["--start", "eclipse", "--size", "800x600"]).unwrap();
-        assert!(bare.mode.is_none());
-        assert_eq!((bare.play.start.as_deref(), bare.play.size), (Some("eclipse"), Some((800, 600))));
-        assert!(matches!(cli(&["play", "--mods", "a", "--mods", "b"]).unwrap().mode, Some(Mode::Play(p)) if p.places.mods.len() == 2));
-    }
-
-    #[test]
-    fn heavy_takes_no_value_or_one_after_an_equals_sign() {
-        let heavy = |words: &[&str]| match cli(words).unwrap().mode {
-            Some(Mode::Replay(r)) => (r.heavy, r.files.len()),
-            other => panic!("{other:?}"),
-        };
-        assert_eq!(heavy(&["replay", "a"]), (None, 1));
-        assert_eq!(heavy(&["replay", "--heavy", "a", "b"]), (Some(97), 2));
-        assert_eq!(heavy(&["replay", "a", "--heavy=10"]), (Some(10), 1));
-    }
-
-    #[test]
-    fn numbers_that_are_none_are_refused() {
-        for (parser_says, ok) in [
-            (size("1280x720").is_ok(), true),
-            (size("0x720").is_ok(), false),
-            (size("1280").is_ok(), false),
-            (size("99999x2").is_ok(), false),
-            (julian_date("2461265.24").is_ok(), true),
-            (julian_date("NaN").is_ok(), false),
-            (julian_date("1e30").is_ok(), false),
-            (finite("inf").is_ok(), false),
-            (positive("-1e-9").is_ok(), false),
-            (positive("0").is_ok(), false),
-            (picture("a.PNG").is_ok(), true),
-            (picture("a.gif").is_ok(), false),
-        ] {
-            assert_eq!(parser_says, ok);
-        }
-    }
-}
+mod tests;

@@ -241,9 +241,14 @@ fn ground(spec: &BodySpec, overlay: &Overlay, folder: &str) -> Ground {
 fn no_ephemeris(error: &EphemerisError, specs: &[BodySpec], masses: &[(String, Mass)]) -> Fault {
     let name = |i: usize| specs.get(i).map_or_else(|| masses.get(i - specs.len()).map_or("", |m| m.0.as_str()), |s| s.name.as_str());
     let (body, message) = match error {
-        EphemerisError::Same(a, b) => {
-            (*b, format!("{} and {} are at the same place: expected bodies apart, since their attraction has no value there", name(*a), name(*b)))
-        }
+        EphemerisError::Same(a, b) => (
+            *b,
+            format!(
+                "{} and {} are at the same place: expected bodies apart, since their attraction has no value there",
+                name(*a),
+                name(*b)
+            ),
+        ),
         EphemerisError::Value { body, what } => (*body, format!("{}: {what}", name(*body))),
         other => (0, other.to_string()),
     };
@@ -287,6 +292,7 @@ fn build(
         radius_m: s.radius_m,
         soi_radius_m,
         spin: s.spin.clone(),
+        shape: s.shape,
         figure: s.figure.clone(),
         albedo: s.albedo,
         intensity_cd: s.intensity_cd,

@@ -18,6 +18,12 @@ impl Hud {
     pub fn back(&self) -> Screen {
         if self.menu.flying { Screen::Pause } else { Screen::Main }
     }
+
+    /// Opens the calendar of eclipses, anew from the present.
+    fn open_calendar(&mut self) {
+        self.calendar = super::calendar::State::default();
+        self.screen = Screen::Calendar;
+    }
 }
 
 fn backdrop(ctx: &egui::Context, alpha: u8) {
@@ -53,6 +59,9 @@ pub fn main(ctx: &egui::Context, hud: &mut Hud, lists: &Lists, reply: &mut Reply
             }
             if choice(ui, "New flight", true) {
                 hud.screen = Screen::Starts;
+            }
+            if choice(ui, "Eclipses", true) {
+                hud.open_calendar();
             }
             if choice(ui, "Load", !lists.saves.is_empty()) {
                 hud.screen = Screen::Saves;
@@ -162,6 +171,9 @@ pub fn pause(ctx: &egui::Context, hud: &mut Hud, reply: &mut Reply) {
             }
             if choice(ui, "New flight", true) {
                 hud.screen = Screen::Starts;
+            }
+            if choice(ui, "Eclipses", true) {
+                hud.open_calendar();
             }
             if choice(ui, "Photo mode", true) {
                 hud.photo.enter();

@@ -60,6 +60,7 @@ pub fn readout() -> Readout {
         target: None,
         sun_visible: 1.0,
         eclipsed_by: None,
+        eclipse: None,
         warnings: Vec::new(),
         last_contact: None,
     }

@@ -179,6 +179,7 @@ fn places_of(mode: &Mode) -> &Places {
         Mode::Probe(Probe::Height(a)) => &a.common.places,
         Mode::Probe(Probe::Kepler(a)) => &a.places,
         Mode::Probe(Probe::Ephemeris(a)) => &a.common.places,
+        Mode::Probe(Probe::Eclipses(a)) => &a.common.places,
         Mode::Probe(Probe::Propagate(a)) => &a.common.places,
         Mode::Bench(Bench::Orbit(a)) => &a.places,
     }

@@ -133,6 +133,7 @@ pub(crate) mod tests {
             target: None,
             sun_visible: 1.0,
             eclipsed_by: None,
+        eclipse: None,
             warnings: Vec::new(),
             last_contact: None,
         }

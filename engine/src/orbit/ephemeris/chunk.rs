@@ -220,9 +220,8 @@ impl Fitter {
             let count = 1_u32 << halvings;
             let mut list = Vec::with_capacity(count as usize);
             for segment in 0..count {
-                let values = core::array::from_fn(|j| {
-                    own.position(0, (f64::from(segment) + 0.5 * (self.nodes[j] + 1.0)) / f64::from(count))
-                });
+                let values =
+                    core::array::from_fn(|j| own.position(0, (f64::from(segment) + 0.5 * (self.nodes[j] + 1.0)) / f64::from(count)));
                 let c = self.coefficients(&values);
                 if tail(&c) > within {
                     break;

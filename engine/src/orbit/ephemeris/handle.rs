@@ -138,7 +138,11 @@ impl System {
             .zip(&bodies)
             // The root moves little, by the pulls of all: it is held as well as the nearest body to it.
             .map(|((list, q), b)| {
-                let size = if *b == 0 { start.q[..bodies.len()].iter().skip(1).map(|p| (*p - *q).length()).fold(f64::INFINITY, f64::min) } else { size(list) };
+                let size = if *b == 0 {
+                    start.q[..bodies.len()].iter().skip(1).map(|p| (*p - *q).length()).fold(f64::INFINITY, f64::min)
+                } else {
+                    size(list)
+                };
                 FIT[0] * if size.is_finite() { size } else { 1.0 } + FLOOR * q.length() + f64::MIN_POSITIVE
             })
             .collect();

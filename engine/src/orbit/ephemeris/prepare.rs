@@ -68,7 +68,8 @@ fn tasks(system: &System, from: SimTime, to: SimTime) -> Vec<Task> {
         let n = level.bodies.len() as f64;
         // The shortest revolution sets the steps: a chunk of the planetary level has one of them, of moons thirty-two.
         let cost = if level.keeps() { 4.0 * n * n } else { 16.0 * (5.0 + n * n) };
-        let chunk = |t: SimTime| t.ticks.saturating_sub(system.tree.epoch.ticks).div_euclid(level.ticks).clamp(-level.reach, level.reach - 1);
+        let chunk =
+            |t: SimTime| t.ticks.saturating_sub(system.tree.epoch.ticks).div_euclid(level.ticks).clamp(-level.reach, level.reach - 1);
         let (first, last) = (chunk(from), chunk(to));
         list.extend((last >= 0).then_some(Task { level: index, last, cost }));
         list.extend((first < 0).then_some(Task { level: index, last: first, cost }));

@@ -124,7 +124,10 @@ fn bits_do_not_depend_on_who_asks_first_or_in_what_order() {
     let ask = |e: &Ephemeris, order: &[i64]| -> Vec<[u64; 3]> {
         let mut list: Vec<(i64, [u64; 3])> = order
             .iter()
-            .flat_map(|d| (0..e.len()).map(|i| (*d * 10 + i as i64, e.state(id(i), EPOCH.plus(*d * DAY_TICKS)).position.0.to_array().map(f64::to_bits))))
+            .flat_map(|d| {
+                (0..e.len())
+                    .map(|i| (*d * 10 + i as i64, e.state(id(i), EPOCH.plus(*d * DAY_TICKS)).position.0.to_array().map(f64::to_bits)))
+            })
             .collect();
         list.sort_unstable();
         list.into_iter().map(|x| x.1).collect()
@@ -168,7 +171,11 @@ fn the_series_is_the_ephemeris_until_its_piece_ends() {
                 let h = ahead.min(1e7) * part;
                 let sum = series.iter().rev().fold(DVec3::ZERO, |sum, c| sum * h + *c);
                 let exact = e.relative_at(BodyId(body), BodyId(center), t.plus_s(h)).position.0;
-                assert!((sum - exact).length() < 2e-15 * 1e12 + 1e-13 * exact.length(), "{body} {center} {days} {part}: {}", (sum - exact).length());
+                assert!(
+                    (sum - exact).length() < 2e-15 * 1e12 + 1e-13 * exact.length(),
+                    "{body} {center} {days} {part}: {}",
+                    (sum - exact).length()
+                );
             }
         }
     }
@@ -254,8 +261,16 @@ fn systems_scaled_by_a_million_either_way_move_alike() {
         };
         let slow = [
             Orbit { parent: None, gm_m3_s2: 1.0e9, path: Path::FromParent { epoch: EPOCH, state: State::default() } },
-            Orbit { parent: about(0), gm_m3_s2: 1.0e5, path: Path::FromParent { epoch: EPOCH, state: state([1.0e7, 0.0, 0.0], [0.0, 9.0, 2.0]) } },
-            Orbit { parent: about(1), gm_m3_s2: 1.0, path: Path::FromParent { epoch: EPOCH, state: state([2.0e4, 0.0, 0.0], [0.0, 2.1, 0.3]) } },
+            Orbit {
+                parent: about(0),
+                gm_m3_s2: 1.0e5,
+                path: Path::FromParent { epoch: EPOCH, state: state([1.0e7, 0.0, 0.0], [0.0, 9.0, 2.0]) },
+            },
+            Orbit {
+                parent: about(1),
+                gm_m3_s2: 1.0,
+                path: Path::FromParent { epoch: EPOCH, state: state([2.0e4, 0.0, 0.0], [0.0, 2.1, 0.3]) },
+            },
         ];
         let e = Ephemeris::new(slow.iter().map(scaled).collect()).unwrap();
         let t = EPOCH.plus(30 * DAY_TICKS);

@@ -77,8 +77,17 @@ impl Tree {
             }
         }
         let epoch = orbits[0].path.epoch();
-        let mut tree =
-            Self { epoch, parent, children, point_gm: family_gm.clone(), gm, family_gm, planetary: vec![false; n], start: Vec::new(), steps: Vec::new() };
+        let mut tree = Self {
+            epoch,
+            parent,
+            children,
+            point_gm: family_gm.clone(),
+            gm,
+            family_gm,
+            planetary: vec![false; n],
+            start: Vec::new(),
+            steps: Vec::new(),
+        };
         tree.start = tree.starts(orbits, details);
         tree.choose();
         tree.steps = (0..n).map(|i| tree.step(i)).collect();
@@ -107,7 +116,11 @@ impl Tree {
             start[i] = match &orbits[i].path {
                 Path::FromParent { state, epoch } => {
                     let own = (state.position.0, state.velocity.0);
-                    if p.is_none() || *epoch == self.epoch { own } else { Conic::new(both, own.0, own.1).after_raw(self.epoch.since(*epoch)) }
+                    if p.is_none() || *epoch == self.epoch {
+                        own
+                    } else {
+                        Conic::new(both, own.0, own.1).after_raw(self.epoch.since(*epoch))
+                    }
                 }
                 Path::Mean(orbit) => {
                     let figure = p.and_then(|p| details.figures.get(p)).and_then(Option::as_ref);

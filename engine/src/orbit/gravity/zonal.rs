@@ -66,11 +66,8 @@ mod tests {
             j[k] = 1e-3;
             let potential = |p: DVec3| {
                 let (r, s) = (p.length(), p.dot(pole) / p.length());
-                let legendre = [
-                    0.5 * (3.0 * s * s - 1.0),
-                    0.5 * s * (5.0 * s * s - 3.0),
-                    0.125 * (35.0 * s * s * s * s - 30.0 * s * s + 3.0),
-                ][k];
+                let legendre =
+                    [0.5 * (3.0 * s * s - 1.0), 0.5 * s * (5.0 * s * s - 3.0), 0.125 * (35.0 * s * s * s * s - 30.0 * s * s + 3.0)][k];
                 let ratio = radius / r;
                 -gm / r * 1e-3 * [ratio * ratio, ratio * ratio * ratio, ratio * ratio * ratio * ratio][k] * legendre
             };

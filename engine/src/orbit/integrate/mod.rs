@@ -17,10 +17,10 @@ pub mod composition;
 pub mod dormand_prince;
 pub mod gauss_radau;
 pub mod runge_kutta;
-pub mod sums;
-pub mod wisdom_holman;
 pub mod series;
+pub mod sums;
 pub mod taylor;
+pub mod wisdom_holman;
 
 use glam::DVec3;
 

@@ -1,6 +1,7 @@
 //! `syzygy probe`: one number or table at a time, for tests and tools outside.
 
 pub mod air;
+pub mod eclipses;
 pub mod ephemeris;
 pub mod height;
 pub mod kepler;
@@ -50,6 +51,11 @@ pub fn run(probe: &Probe) -> Result<(), Error> {
             let setting = method.setting(args.tol, args.dt)?;
             let case = orbit_case::read(&args.case, args.name.as_deref(), args.t)?;
             answer(args.common.out.as_deref(), |out| propagate::write(&case, method, setting, out))
+        }
+        Probe::Eclipses(args) => {
+            let system = system(&args.common)?;
+            let (on, by) = (find(&system, &args.on)?, find(&system, &args.by)?);
+            answer(args.common.out.as_deref(), |out| eclipses::write(&system, on, by, args, out))
         }
     }
 }

@@ -10,7 +10,7 @@ const END: i64 = START.ticks + 60 * 86_400 * 30;
 fn past_the_moon() -> World {
     let mut world = moving(&planet_and_moon(), torch(), 400e3, DVec3::ZERO);
     let (s, c) = libm::sincos(-2.05);
-    let speed = (2.0 * 3.986_004_4e14 * (1.0 / 2.0e7 - 1.0 / 4.15e8)).sqrt();
+    let speed = (2.0_f64 * 3.986_004_4e14 * (1.0 / 2.0e7 - 1.0 / 4.15e8)).sqrt();
     let state = State { position: Position::new(DVec3::new(c, s, 0.02) * 2.0e7), velocity: Velocity::new(DVec3::new(-s, c, 0.01) * speed) };
     world.ship.motion = Motion::Fly(Rigid { state, ..world.rigid() });
     world.enter_path();

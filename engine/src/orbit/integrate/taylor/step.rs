@@ -117,7 +117,8 @@ pub(super) fn advance<S: Four>(start: [Two<S>; 4], order: usize, h: f64, more: i
     let h2 = h.product(h);
     let h3 = h2 * h;
     let moved = sum(x, [v * h, c2 * h2, c3 * h3], rest * (y * y));
-    let bent = sum(v, [c2.scaled(2.0) * h, c3 * h.all(3.0) * h2, Two { high: h.all(0.0), low: h.all(0.0) }], (rest * 4.0 + rate * h) * (h * y));
+    let bent =
+        sum(v, [c2.scaled(2.0) * h, c3 * h.all(3.0) * h2, Two { high: h.all(0.0), low: h.all(0.0) }], (rest * 4.0 + rate * h) * (h * y));
     (moved, bent)
 }
 
