@@ -54,6 +54,8 @@ pub enum Kind {
         heard: Vec<usize>,
         /// For each of the others: places in `heard`, and weights.
         others: Vec<Vec<(usize, f64)>>,
+        /// Weight of each moon in the track that comes after theirs: what they draw the body aside.
+        shares: Vec<f64>,
     },
 }
 
@@ -266,7 +268,7 @@ impl Level {
         let mut points = Points { t: start, q: from.q.clone(), v: from.v.clone() };
         match &self.kind {
             Kind::Planets { forces, .. } => run(&forces.run(), GaussRadau::TOLERANCE, &mut points, end, steps),
-            Kind::Moons { planet_gm, gm, figure, others_gm, heard: tracks, others } => {
+            Kind::Moons { planet_gm, gm, figure, others_gm, heard: tracks, others, .. } => {
                 let others = self.others(heard, (early, late), tracks, others);
                 let forces = Moons {
                     planet_gm: *planet_gm,
@@ -329,7 +331,11 @@ impl Level {
                         *out = list.iter().fold(DVec3::ZERO, |sum, (k, w)| sum + q[*k] * *w);
                     }
                 }
-                Kind::Moons { .. } => out.copy_from_slice(&q),
+                Kind::Moons { shares, .. } => {
+                    let (moons, aside) = out.split_at_mut(q.len());
+                    moons.copy_from_slice(&q);
+                    aside.fill(q.iter().zip(shares).fold(DVec3::ZERO, |sum, (q, share)| sum + *q * *share));
+                }
             }
         };
         self.fitter.fit(&self.within_m, self.halvings, sample)
