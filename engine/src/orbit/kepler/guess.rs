@@ -166,3 +166,20 @@ impl<T: Real> Pericentre<T> {
         (z + b) / d + turns - self.sigma
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_short_functions_are_as_near_as_they_say() {
+        for k in -400..=400 {
+            let x = f64::from(k) / 400.0;
+            assert!((short_atan(x) - libm::atan(x)).abs() < 2e-6, "atan {x}");
+            let wide = libm::exp(500.0 * x);
+            assert!((short_log(wide) - libm::log(wide)).abs() < 2e-6, "log {wide}");
+            assert!((short_cbrt(wide) / libm::cbrt(wide) - 1.0).abs() < 3e-5, "cbrt {wide}");
+            assert!((short_asinh(wide) - libm::asinh(wide)).abs() < 2e-6 || wide > 1e150, "asinh {wide}");
+        }
+    }
+}

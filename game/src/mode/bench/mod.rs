@@ -3,6 +3,7 @@
 //! Each bench prints its rows as JSON on stdout (or into `--json`), one object a run, so that tools compare them with others'.
 //! Not here: the numbers that probes give ([`super::probe`]), the tests that hold them.
 
+pub mod kepler;
 pub mod orbit;
 pub mod orbit_case;
 pub mod orbit_method;

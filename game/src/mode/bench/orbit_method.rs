@@ -6,6 +6,7 @@ use crate::assets::fault::did_you_mean;
 use engine::orbit::integrate::composition::{Composition, SCHEMES, Scheme};
 use engine::orbit::integrate::dormand_prince::{DORMAND_PRINCE_5, DORMAND_PRINCE_8, Embedded, Pair};
 use engine::orbit::integrate::gauss_radau::GaussRadau;
+use engine::orbit::integrate::taylor::Taylor;
 use engine::orbit::integrate::wisdom_holman::{Corrector, Hierarchy, WisdomHolman};
 use engine::orbit::integrate::{Force, Points, Work};
 use glam::DVec3;
@@ -22,6 +23,8 @@ pub enum Method {
     DormandPrince(Pair),
     /// Gauss–Radau of order 15.
     GaussRadau,
+    /// Taylor series for point masses, of the order that its tolerance asks for.
+    Taylor,
 }
 
 /// What a method is told.
@@ -63,7 +66,7 @@ pub fn all() -> Vec<Method> {
     let compositions = SCHEMES.into_iter().map(Method::Composition);
     let wisdom = Corrector::ALL.into_iter().map(Method::WisdomHolman);
     let pairs = [DORMAND_PRINCE_5, DORMAND_PRINCE_8].into_iter().map(Method::DormandPrince);
-    compositions.chain(wisdom).chain(pairs).chain([Method::GaussRadau]).collect()
+    compositions.chain(wisdom).chain(pairs).chain([Method::GaussRadau, Method::Taylor]).collect()
 }
 
 impl Method {
@@ -94,12 +97,13 @@ impl Method {
             Self::WisdomHolman(corrector) => format!("wisdom_holman_c{}", corrector.order()),
             Self::DormandPrince(pair) => pair.table.name.to_owned(),
             Self::GaussRadau => "gauss_radau".to_owned(),
+            Self::Taylor => "taylor".to_owned(),
         }
     }
 
     /// True where it chooses its own steps.
     pub fn adaptive(&self) -> bool {
-        matches!(self, Self::DormandPrince(_) | Self::GaussRadau)
+        matches!(self, Self::DormandPrince(_) | Self::GaussRadau | Self::Taylor)
     }
 
     /// Evaluations of the force in a step of a method of fixed step.
@@ -117,11 +121,16 @@ impl Method {
         match (self.adaptive(), tolerance, step) {
             (true, Some(tolerance), None) if sound(tolerance) => Ok(Setting::Tolerance(tolerance)),
             (true, None, None) if *self == Self::GaussRadau => Ok(Setting::Tolerance(GaussRadau::TOLERANCE)),
-            (true, None, None) => Ok(Setting::Tolerance(1e-13)),
+            (true, None, None) => Ok(Setting::Tolerance(if *self == Self::Taylor { 1e-18 } else { 1e-13 })),
             (true, ..) => fault("a tolerance, a positive number, and no step", "for example --tol 1e-9"),
             (false, None, Some(step)) if sound(step) => Ok(Setting::Step(step)),
             (false, ..) => fault("a step, a positive number in the case's unit of time, and no tolerance", "for example --dt 0.5"),
         }
+    }
+
+    /// False where its evaluations are whole power series and do not compare with those of a force.
+    pub fn counts_forces(&self) -> bool {
+        *self != Self::Taylor
     }
 
     /// From `points` to `t_end`, in place. A run that cannot reach the end (a collision) stops before it: compare `points.t`.
@@ -138,6 +147,8 @@ impl Method {
             }
             Self::DormandPrince(pair) => Embedded::new(*pair, n, number, false).run(&masses, points, t_end),
             Self::GaussRadau => GaussRadau::new(n, number).run(&masses, points, t_end),
+            // Where it stops short the points say so by their time.
+            Self::Taylor => Taylor::new(gm, number).run(points, t_end).unwrap_or_default(),
         }
     }
 }

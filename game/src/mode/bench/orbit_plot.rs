@@ -54,7 +54,8 @@ fn curves<'a>(case: &Case, own: &'a [Row], peers: &'a [Row], anchors: &'a [Row])
             }
         }
     }
-    for curve in &mut all {
+    // Ours are in the order of their settings; others are joined by their time.
+    for curve in all.iter_mut().filter(|c| c.hollow) {
         curve.rows.sort_by(|a, b| a.cpu_s.total_cmp(&b.cpu_s));
     }
     all

@@ -43,7 +43,7 @@ pub fn run() -> Vec<Line> {
     lines
 }
 
-/// Sun, Mercury, Venus, the Earth with its Moon, Mars: the first five of a case of the reference data.
+/// Sun, Mercury, Venus, the Earth and Moon as one, Mars: the first five of a case of the reference data.
 fn inner_system() -> Option<Case> {
     let mut case = orbit_case::reference("SS9_100yr").ok()?;
     case.gm.truncate(5);

@@ -8,7 +8,7 @@
 //! - [Jorba & Zou 2005] Experimental Mathematics 14, prop. 2.1 (products and powers of series).
 
 use super::lanes::{EMPTY, Four, Lanes, Two};
-use super::step::{self, Bound, EXACT, HALF, INVERSE, ROOM};
+use super::step::{self, Bound, HALF, INVERSE, ROOM};
 use super::{Points, Sink, Stop};
 use pulp::f64x4;
 
@@ -16,8 +16,11 @@ use pulp::f64x4;
 #[derive(Clone, Debug)]
 #[repr(align(32))]
 struct Orbit {
-    /// Coefficients of x, y, z of the separation; the last lane is that of r².
+    /// Coefficients of x, y, z of the separation d; the last lane is that of r²/r₀².
     d: [f64x4; ROOM],
+    /// Those of 2 d/r₀², as far as they are needed.
+    e: [f64x4; ROOM],
+    /// Those of u.
     u: [f64; ROOM],
     /// Position and velocity at the start, from the origin, and orders 2 and 3: two words each.
     start: [[f64x4; 2]; 4],
@@ -51,7 +54,7 @@ impl Centre {
     /// For the one body of `gm` that is not 0.
     pub(super) fn new(gm: &[f64], order: usize) -> Self {
         let body = gm.iter().position(|m| *m > 0.0).unwrap_or(0);
-        let orbit = |body| Orbit { d: [EMPTY; ROOM], u: [0.0; ROOM], start: [[EMPTY; 2]; 4], body, unit: 1.0 };
+        let orbit = |body| Orbit { d: [EMPTY; ROOM], e: [EMPTY; ROOM], u: [0.0; ROOM], start: [[EMPTY; 2]; 4], body, unit: 1.0 };
         Self {
             body,
             gm: gm.get(body).copied().unwrap_or(0.0),
@@ -75,8 +78,8 @@ impl Centre {
             }
             orbit.sweeps(s, self.order);
             let (last_but_one, last) = (Lanes::new(s, orbit.d[self.order - 1]), Lanes::new(s, orbit.d[self.order]));
-            let r2 = orbit.d[0].3;
-            let ratio = [(last_but_one * last_but_one).sum_of_three() / r2, (last * last).sum_of_three() / r2];
+            let e = Lanes::new(s, orbit.e[0]).array()[3];
+            let ratio = [(last_but_one * last_but_one).sum_of_three() * e, (last * last).sum_of_three() * e];
             length = length.min(bound.length(ratio) * orbit.unit);
             orbit.refine(start, apart, self.gm);
         }
@@ -108,22 +111,8 @@ fn state<S: Four>(s: S, points: &Points, low: &Points, body: usize) -> [Two<S>; 
     [Two::from_vectors(s, points.q[body], low.q[body]), Two::from_vectors(s, points.v[body], low.v[body])]
 }
 
-/// t/(r² k); above [`EXACT`] by reciprocals.
-#[inline(always)]
-#[allow(clippy::cast_precision_loss)] // orders are small
-fn over(t: f64, r2: f64, k: usize) -> f64 {
-    if k <= EXACT { t / (r2 * k as f64) } else { t * (1.0 / r2 * INVERSE[k]) }
-}
-
-/// f/((k−1) k); above [`EXACT`] by reciprocals.
-#[inline(always)]
-#[allow(clippy::cast_precision_loss)] // orders are small
-fn lift<S: Four>(f: Lanes<S>, k: usize) -> Lanes<S> {
-    if k <= EXACT { f / f.all(((k - 1) * k) as f64) } else { f * (INVERSE[k - 1] * INVERSE[k]) }
-}
-
 impl Orbit {
-    /// Orders 0 to 3 in one word. False where the bodies are at one place.
+    /// Orders 0 to 5 in one word, those of r² and u to 3. False where the bodies are at one place.
     #[inline(always)]
     fn begin<S: Four>(&mut self, d0: Lanes<S>, v: Lanes<S>, gm: f64) -> bool {
         let r2 = (d0 * d0).sum_of_three();
@@ -132,67 +121,106 @@ impl Orbit {
         }
         let u = d0.all(r2).inverse_three_halves().array()[0];
         self.unit = step::time_scale(u * gm);
+        let inverse = 1.0 / r2;
         let d1 = v * self.unit;
+        let (e0, e1) = (d0 * (2.0 * inverse), d1 * (2.0 * inverse));
         let u0 = -gm * (self.unit * self.unit) * u;
-        let r2_1 = 2.0 * (d0 * d1).sum_of_three();
-        let u1 = -1.5 * u0 * r2_1 / r2;
-        self.d[0] = d0.with_last(r2).rest();
-        self.d[1] = d1.with_last(r2_1).rest();
-        self.d[2] = (d0 * (0.5 * u0)).rest();
-        self.d[3] = ((d1 * u0 + d0 * u1) / d0.all(6.0)).rest();
-        self.u[0] = u0;
-        self.u[1] = u1;
+        let r1 = (e0 * d1).sum_of_three();
+        let u1 = -1.5 * u0 * r1;
+        let d2 = d0 * (0.5 * u0);
+        let d3 = (d1 * u0 + d0 * u1) / d0.all(6.0);
+        // Orders 2 and 3 of r² and u, 4 and 5 of d.
+        let r2 = (e0 * d2 + e1 * d1 * 0.5).sum_of_three();
+        let r3 = (e0 * d3 + e1 * d2).sum_of_three();
+        let u2 = -1.5 * r2 * u0 - 1.25 * r1 * u1;
+        let u3 = -(9.0 * r3 * u0 + 8.0 * r2 * u1 + 7.0 * r1 * u2) / 6.0;
+        let d4 = (d2 * u0 + d1 * u1 + d0 * u2) / d0.all(12.0);
+        let d5 = (d3 * u0 + d2 * u1 + d1 * u2 + d0 * u3) / d0.all(20.0);
+        self.e[0] = e0.with_last(inverse).rest();
+        self.e[1] = e1.rest();
+        self.e[2] = (d2 * (2.0 * inverse)).rest();
+        self.d[0] = d0.with_last(1.0).rest();
+        self.d[1] = d1.with_last(r1).rest();
+        self.d[2] = d2.with_last(r2).rest();
+        self.d[3] = d3.with_last(r3).rest();
+        self.d[4] = d4.rest();
+        self.d[5] = d5.rest();
+        self.u[..4].copy_from_slice(&[u0, u1, u2, u3]);
         true
     }
 
-    /// Orders 4 … `order`, two at a time.
+    /// Orders 6 … `order`, two at a time.
     #[inline(always)]
     fn sweeps<S: Four>(&mut self, s: S, order: usize) {
         macro_rules! each {
             ($($k:literal)*) => { $( if $k + 3 <= order { self.sweep::<S, $k>(s); } )* };
         }
-        each!(2 4 6 8 10 12 14 16 18 20 22 24 26 28);
+        each!(4 6 8 10 12 14 16 18 20 22 24 26 28);
     }
 
     /// Orders `K` + 2 and `K` + 3 from those below, by r² and u of orders `K` (even) and `K` + 1.
+    ///
+    /// With m = k − j, `u_k = −Σ (1 + m/2k) (r²/r₀²)_m u_j`. What hangs on the newest orders comes last: each sweep waits for the one
+    /// before it, and this is the way through.
     #[inline(always)]
+    #[allow(clippy::cast_precision_loss)] // orders are small
     fn sweep<S: Four, const K: usize>(&mut self, s: S) {
-        let d = |k: usize| Lanes::new(s, self.d[k]);
-        let mut even = d(0) * d(K);
-        let mut odd = d(0) * d(K + 1);
-        for j in 1..K / 2 {
-            even = even + d(j) * d(K - j);
-            odd = odd + d(j) * d(K + 1 - j);
+        let (u, inverse) = (&self.u, self.e[0].3);
+        macro_rules! d {
+            ($k:expr) => {
+                Lanes::new(s, self.d[$k])
+            };
         }
-        let middle = d(K / 2);
-        let even = (even * 2.0 + middle * middle).sum_of_three();
-        let odd = ((odd + middle * d(K / 2 + 1)) * 2.0).sum_of_three();
-        let (newest, next) = (d(K).with_last(even), d(K + 1).with_last(odd));
-        // Σ u_j (d, r²)_{k−j}; the last lane with the weights of a power's recurrence, −(3k − j)/2. Oldest terms first: the newest are
-        // the ones to wait for.
-        let weight = |at: usize| Lanes::new(s, WEIGHTS[at]);
-        let u = &self.u;
-        let mut f = [Lanes::zero(s); 2];
-        let mut g = [Lanes::zero(s); 2];
-        for j in 2..K {
-            f[j % 2] = f[j % 2] + d(K - j) * u[j] * weight(3 * K - j);
-            g[j % 2] = g[j % 2] + d(K + 1 - j) * u[j] * weight(3 * K + 3 - j);
+        macro_rules! e {
+            ($k:expr) => {
+                Lanes::new(s, self.e[$k])
+            };
         }
-        let f = f[0] + f[1] + d(K - 1) * u[1] * weight(3 * K - 1) + newest * u[0] * weight(3 * K);
-        let g = g[0] + g[1] + newest * u[1] * weight(3 * K + 2) + next * u[0] * weight(3 * K + 3);
-        let r2 = self.d[0].3;
-        let u_even = over(f.array()[3], r2, K);
-        let f = f + d(0) * u_even;
-        let g = g + d(1) * u_even * weight(2 * K + 3);
-        let u_odd = over(g.array()[3], r2, K + 1);
-        let g = g + d(0) * u_odd;
-        let (lifted, lifted_next) = (lift(f, K + 2), lift(g, K + 3));
-        self.d[K] = newest.rest();
-        self.d[K + 1] = next.rest();
+        // Of order k, the weight of (r²)_m.
+        macro_rules! weight {
+            ($k:expr, $m:expr) => {
+                -((2 * $k + $m) as f64) / ((2 * $k) as f64)
+            };
+        }
+        // Terms of all but the newest orders: force in lanes x, y, z, and in the last the sum for u, times k.
+        macro_rules! old {
+            ($order:expr, $j:expr) => {
+                d!($order - $j) * u[$j] * Lanes::new(s, WEIGHTS[3 * $order - $j])
+            };
+        }
+        let (mut f, mut g, mut f_odd, mut g_odd) = (old!(K, 2), old!(K + 1, 2), Lanes::zero(s), Lanes::zero(s));
+        for j in (3..K - 2).step_by(2) {
+            f_odd = f_odd + old!(K, j);
+            g_odd = g_odd + old!(K + 1, j);
+            f = f + old!(K, j + 1);
+            g = g + old!(K + 1, j + 1);
+        }
+        let (f, g) = (f + f_odd, g + g_odd);
+        let (r1, r2, r_last) = (self.d[1].3, self.d[2].3, self.d[K - 1].3);
+        let t = f.array()[3] * INVERSE[K] + weight!(K, K - 1) * u[1] * r_last + weight!(K, 1) * r1 * u[K - 1];
+        let t_next = g.array()[3] * INVERSE[K + 1] + weight!(K + 1, 2) * r2 * u[K - 1];
+        let (mut even, mut odd) = (e!(K / 2) * d!(K / 2) * 0.5, e!(K / 2) * d!(K / 2 + 1));
+        for j in (1..K / 2).rev() {
+            even = even + e!(j) * d!(K - j);
+            odd = odd + e!(j) * d!(K + 1 - j);
+        }
+        let (lift, lift_next) = (INVERSE[K + 1] * INVERSE[K + 2], INVERSE[K + 2] * INVERSE[K + 3]);
+        let f = (f + d!(1) * u[K - 1] + d!(K - 1) * u[1]) * lift + d!(K) * (u[0] * lift);
+        let g = (g + d!(2) * u[K - 1] + d!(K) * u[1]) * lift_next + d!(K + 1) * (u[0] * lift_next);
+        // The newest.
+        let even = (even + e!(0) * d!(K)).sum_of_three();
+        let odd = (odd + e!(0) * d!(K + 1)).sum_of_three();
+        let u_even = t + weight!(K, K) * u[0] * even;
+        let u_odd = t_next + weight!(K + 1, K) * u[1] * even + weight!(K + 1, K + 1) * u[0] * odd + weight!(K + 1, 1) * r1 * u_even;
+        let next = f + d!(0) * lift * u_even;
+        let next_but_one = g + d!(1) * lift_next * u_even + d!(0) * lift_next * u_odd;
+        self.d[K] = d!(K).with_last(even).rest();
+        self.d[K + 1] = d!(K + 1).with_last(odd).rest();
+        self.e[K / 2 + 1] = (d!(K / 2 + 1) * (2.0 * inverse)).rest();
         self.u[K] = u_even;
         self.u[K + 1] = u_odd;
-        self.d[K + 2] = lifted.rest();
-        self.d[K + 3] = lifted_next.rest();
+        self.d[K + 2] = next.rest();
+        self.d[K + 3] = next_but_one.rest();
     }
 
     /// Orders 2 and 3 in two words: x₂ = u d/2 and x₃ = u (d′ − 3 (d·d′/r²) d)/6.

@@ -10,12 +10,12 @@
 //! - [Knuth 1997] "The Art of Computer Programming", vol. 2, §4.2.2, theorem B (the error of a sum).
 
 use glam::DVec3;
-use pulp::{Simd, f64x4};
+use pulp::{Simd, f64x4, u64x4};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A kind of machine that has, or plays, vectors of four.
-pub(super) trait Four: Simd<f64s = f64x4> {}
-impl<T: Simd<f64s = f64x4>> Four for T {}
+pub(super) trait Four: Simd<f64s = f64x4, u64s = u64x4> {}
+impl<T: Simd<f64s = f64x4, u64s = u64x4>> Four for T {}
 
 /// Work that is compiled for each kind of machine.
 pub(super) trait OnFour {
@@ -147,10 +147,26 @@ impl<S: Four> Lanes<S> {
         DVec3::new(self.v.0, self.v.1, self.v.2)
     }
 
-    /// Lane 3 replaced.
+    /// Lane 3 replaced. By masks, so that it is written to memory with the others: a load that spans two writes has to wait for them.
     #[inline(always)]
     pub(super) fn with_last(self, x: f64) -> Self {
-        Self { s: self.s, v: f64x4(self.v.0, self.v.1, self.v.2, x) }
+        const LAST: u64x4 = u64x4(0, 0, 0, u64::MAX);
+        const REST: u64x4 = u64x4(u64::MAX, u64::MAX, u64::MAX, 0);
+        let s = self.s;
+        let (kept, new) = (s.transmute_u64s_f64s(self.v), s.transmute_u64s_f64s(s.splat_f64s(x)));
+        Self { s, v: s.transmute_f64s_u64s(s.or_u64s(s.and_u64s(kept, REST), s.and_u64s(new, LAST))) }
+    }
+
+    /// Lanes 1, 2, 0: of three bodies in a ring, the next.
+    #[inline(always)]
+    pub(super) fn next_of_three(self) -> Self {
+        Self { s: self.s, v: f64x4(self.v.1, self.v.2, self.v.0, self.v.3) }
+    }
+
+    /// Lanes 2, 0, 1: of three bodies in a ring, the one before.
+    #[inline(always)]
+    pub(super) fn last_of_three(self) -> Self {
+        Self { s: self.s, v: f64x4(self.v.2, self.v.0, self.v.1, self.v.3) }
     }
 
     #[inline(always)]
@@ -271,7 +287,8 @@ impl<S: Four> Two<S> {
 
     #[inline(always)]
     pub(super) fn from_vectors(s: S, high: DVec3, low: DVec3) -> Self {
-        Self::new(s, f64x4(high.x, high.y, high.z, 0.0), f64x4(low.x, low.y, low.z, 0.0))
+        let wide = |v: DVec3| Lanes::new(s, f64x4(v.x, v.y, v.z, v.z)).with_last(0.0);
+        Self { high: wide(high), low: wide(low) }
     }
 
     #[inline(always)]

@@ -53,6 +53,9 @@ pub(super) struct Pairs {
     rings: Vec<Ring>,
     /// For each four bodies, what their accelerations consist of.
     terms: Vec<Vec<Term>>,
+    /// Of three bodies, the mass of the next and, negative, of the one before: they fit one vector, and turning it replaces shifted
+    /// loads, which would wait for the writes that they span.
+    three: Option<[f64x4; 2]>,
     /// Sum of the masses of each pair; 0 where neither attracts, and where there is no pair.
     both: Vec<f64x4>,
     /// 1 where a pair counts, else 0.
@@ -114,6 +117,7 @@ impl Pairs {
             stride,
             terms: (0..n).step_by(4).map(|first| terms(gm, &rings, first)).collect(),
             rings,
+            three: if let [a, b, c] = *gm { Some([f64x4(b, c, a, 0.0), f64x4(-c, -a, -b, 0.0)]) } else { None },
             mask: fours(|m| if m > 0.0 { 1.0 } else { 0.0 }),
             both: fours(|m| m),
             history: vec![Row { d: [EMPTY; 3], r2: EMPTY, u: EMPTY }; both.len() / 4 * (order + 1)],
@@ -130,15 +134,13 @@ impl Pairs {
     pub(super) fn build<S: Four>(&mut self, s: S, points: &Points, low: &Points, bound: &Bound) -> Result<f64, Stop> {
         for i in 0..self.n {
             let from = [&points.q[i], &points.v[i], &low.q[i], &low.v[i]].map(DVec3::to_array);
-            for c in 0..3 {
+            let [q, v, q_low, v_low] = from;
+            for (c, (((q, v), q_low), v_low)) in q.into_iter().zip(v).zip(q_low).zip(v_low).enumerate() {
                 let at = c * self.stride + i;
-                self.x[0][at] = from[0][c];
-                self.x[1][at] = from[1][c];
-                self.low[0][at] = from[2][c];
-                self.low[1][at] = from[3][c];
-                self.x[0][at + self.n] = from[0][c];
-                self.x[1][at + self.n] = from[1][c];
-                self.low[0][at + self.n] = from[2][c];
+                (self.x[0][at], self.x[0][at + self.n]) = (q, q);
+                (self.x[1][at], self.x[1][at + self.n]) = (v, v);
+                (self.low[0][at], self.low[0][at + self.n]) = (q_low, q_low);
+                self.low[1][at] = v_low;
             }
         }
         let unit = step::time_scale(self.first(s)?);
@@ -266,6 +268,11 @@ impl Pairs {
         for (order, apart) in self.apart.iter_mut().enumerate() {
             for (c, apart) in apart.iter_mut().enumerate() {
                 let x = &self.x[k + order][c * self.stride..(c + 1) * self.stride];
+                if self.three.is_some() {
+                    let x = Lanes::load(s, x, 0);
+                    (x.next_of_three() - x).store(apart, LEAD);
+                    continue;
+                }
                 for ring in &self.rings {
                     for i in (0..ring.len).step_by(4) {
                         let d = Lanes::load(s, x, i + ring.shift) - Lanes::load(s, x, i);
@@ -346,6 +353,13 @@ impl Pairs {
         let factor = square * (INVERSE[k + 1] * INVERSE[k + 2]);
         for (c, force) in self.force[newest].iter().enumerate() {
             let x = &mut self.x[k + 2][c * self.stride..(c + 1) * self.stride];
+            if let Some([next, last]) = self.three {
+                let f = Lanes::load(s, force, LEAD);
+                let a = f * Lanes::new(s, next) + f.last_of_three() * Lanes::new(s, last);
+                let a = if k + 2 <= EXACT { a * square / a.all(divisor) } else { a * factor };
+                a.store(x, 0);
+                continue;
+            }
             for (i, terms) in self.terms.iter().enumerate() {
                 let mut a = Lanes::zero(s);
                 for term in terms {
