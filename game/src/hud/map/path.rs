@@ -161,9 +161,11 @@ pub fn flags(chart: &Chart<'_, '_>, lines: &Lines, pointer: Option<Pos2>, taken:
         let Some((text, colour)) = name(chart, flag) else { continue };
         let place = chart.place(&flag.anchor, flag.position);
         let centre = chart.offset(flag.anchor.body) + flag.anchor.base;
-        if !place.is_finite() || chart.projection.behind(place, centre, chart.world.system.body(flag.mark.host).radius_m) {
+        if !place.is_finite() {
             continue;
         }
+        let hidden = chart.projection.behind(place, centre, chart.world.system.body(flag.mark.host).radius_m);
+        let colour = if hidden { colour.gamma_multiply(0.5) } else { colour };
         let at = chart.projection.at(place);
         if !chart.rect.contains(at) {
             continue;
