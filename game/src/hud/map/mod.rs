@@ -146,7 +146,9 @@ pub fn show(ctx: &egui::Context, scene: &Scene<'_>, view: &mut MapView, opacity:
         let mut on_path = None;
         if let (Some(course), Some(lines)) = (&course, &lines) {
             let tracks = path::draw(&chart, lines);
-            let mut taken = Vec::new();
+            // No label under a panel.
+            let panel = |id: &str| ctx.memory(|m| m.area_rect(egui::Id::unique(id)));
+            let mut taken: Vec<Rect> = ["map legend", "map burns", "clock"].into_iter().filter_map(panel).collect();
             busy = nodes::show(ui, &chart, view, course, lines, &tracks, &mut taken, reply);
             let pointer = response.hover_pos().filter(|_| !busy && !response.dragged());
             let flagged = path::flags(&chart, lines, pointer, &mut taken);
