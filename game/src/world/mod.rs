@@ -4,7 +4,6 @@
 //! [`readout`] for what the World tells. [`start`] makes a World, [`fields`] lists its bits for replays. Not here:
 //! anything drawn, heard or saved.
 
-pub mod ahead;
 pub mod clock;
 pub mod eclipse;
 pub mod fields;
