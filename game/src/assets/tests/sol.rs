@@ -45,14 +45,23 @@ fn everything_that_is_shipped_loads() {
 const DE440: &str = include_str!("../../../../tests/reference/de440_states.csv");
 
 fn de440(jd: f64, body: &str) -> DVec3 {
-    let row = DE440.lines().filter(|l| l.starts_with("24")).map(|l| l.split(',').collect::<Vec<_>>()).find(|f| f[0].parse() == Ok(jd) && f[1] == body);
+    let row = DE440
+        .lines()
+        .filter(|l| l.starts_with("24"))
+        .map(|l| l.split(',').collect::<Vec<_>>())
+        .find(|f| f[0].parse() == Ok(jd) && f[1] == body);
     let f: Vec<f64> = row.unwrap()[2..5].iter().map(|x| x.parse().unwrap()).collect();
     DVec3::new(f[0], f[1], f[2]) * KM
 }
 
 /// GM of the planets with all their moons in DE440, km³/s².
-const FAMILY_GM: [(&str, f64); 5] =
-    [("mars", 42_828.375_816), ("jupiter", 126_712_764.1), ("saturn", 37_940_584.841_8), ("uranus", 5_794_556.4), ("neptune", 6_836_527.100_58)];
+const FAMILY_GM: [(&str, f64); 5] = [
+    ("mars", 42_828.375_816),
+    ("jupiter", 126_712_764.1),
+    ("saturn", 37_940_584.841_8),
+    ("uranus", 5_794_556.4),
+    ("neptune", 6_836_527.100_58),
+];
 
 /// Position of a body, or of a planet with its moons, carried from the tick to the exact Julian date.
 fn ours(s: &System, body: &str, jd: f64) -> DVec3 {
