@@ -6,7 +6,7 @@
 mod bench;
 mod eclipses;
 
-pub use bench::BenchOrbitArgs;
+pub use bench::{BenchOrbitArgs, BenchShipsArgs};
 pub use eclipses::ProbeEclipsesArgs;
 
 use clap::{Args, Parser, Subcommand};
@@ -249,6 +249,9 @@ pub enum Bench {
     /// Every integrator on every case of the reference data: error against CPU time and evaluations
     #[command(after_help = "Example:\n  syzygy bench orbit --case LEO_1000orb --method gauss_radau --json leo.json --plot plots")]
     Orbit(BenchOrbitArgs),
+    /// What choosing the terms of gravity by an error bound costs in error and saves in time
+    #[command(after_help = "Example:\n  syzygy bench ships --json ships.json")]
+    Ships(BenchShipsArgs),
 }
 
 /// Arguments that all probes share.

@@ -4,6 +4,7 @@
 //! Axes are quantised to `i16` *before* the World sees them, so that a recorded flight is the flown one, bit for bit.
 
 use engine::orbit::BodyId;
+use engine::time::SimTime;
 use serde::{Deserialize, Serialize};
 
 /// Full deflection of an axis.
@@ -72,6 +73,8 @@ pub enum Hold {
     SurfaceVertical,
     /// Nose towards the target.
     Target,
+    /// Nose along what remains of the next planned burn.
+    Node,
 }
 
 /// What flies the throttle (and, for landing, the attitude).
@@ -89,7 +92,21 @@ pub enum Guidance {
     },
     /// From orbit to standing on the target spot (or on what lies ahead where none is set).
     Land,
+    /// The next planned burn: turns in time, begins half a burn early, cuts off when it is done.
+    Node,
 }
+
+/// A planned burn: a change of velocity at a moment of the path ahead, in the axes of the path there.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Node {
+    /// The middle of the burn.
+    pub at: SimTime,
+    /// Along the velocity, the orbit's normal, and outward across both, mm/s.
+    pub dv_mm_s: [i32; 3],
+}
+
+/// Planned burns that a ship keeps.
+pub const MOST_NODES: usize = 16;
 
 /// A place on a body, in microdegrees so that it is exact in a log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -136,6 +153,14 @@ pub enum Action {
     Quicksave,
     /// Go back to the newest quick slot of this session.
     Quickload,
+    /// Plan a burn.
+    AddNode(Node),
+    /// Put another burn in the place of the one with this number (in order of time, from 0).
+    ChangeNode(u8, Node),
+    /// Give up the planned burn with this number.
+    DeleteNode(u8),
+    /// Run the clock as fast as it may until shortly before a moment; `None`, or a choice of warp, ends that.
+    WarpTo(Option<SimTime>),
 }
 
 /// All commands of one tick.

@@ -55,6 +55,7 @@ fn state() -> SaveV1 {
         warp: 2,
         warp_asked: 2,
         target: None,
+        warp_to_ticks: None,
         ship: ShipV1 {
             motion: MotionV1::Landed(RestingV1 {
                 body: "earth".into(),
@@ -72,6 +73,8 @@ fn state() -> SaveV1 {
             ground: Default::default(),
             effort: [0.0; 3],
             last_contact: None,
+            nodes: Vec::new(),
+            burn: None,
         },
     }
 }

@@ -32,3 +32,17 @@ pub struct BenchOrbitArgs {
     /// Folders.
     pub places: Places,
 }
+
+/// Arguments of `bench ships`.
+#[derive(Clone, Debug, Args)]
+pub struct BenchShipsArgs {
+    /// Write the rows here instead of stdout
+    #[arg(long, value_name = "F.json")]
+    pub json: Option<PathBuf>,
+    /// The system, a folder of assets/systems
+    #[arg(long, value_name = "NAME", default_value = "sol")]
+    pub system: String,
+    #[command(flatten)]
+    /// Folders.
+    pub places: Places,
+}

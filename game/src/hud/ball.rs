@@ -23,6 +23,8 @@ pub enum Glyph {
     Radial,
     /// Diamond.
     Target,
+    /// Circle with three spokes: along a planned burn.
+    Node,
 }
 
 /// Draws a marker's glyph.
@@ -52,6 +54,12 @@ pub fn glyph(painter: &Painter, at: Pos2, r: f32, kind: Glyph, colour: Color32) 
         Glyph::Target => {
             let p = [Vec2::new(0.0, -0.9), Vec2::new(0.9, 0.0), Vec2::new(0.0, 0.9), Vec2::new(-0.9, 0.0)].map(|v| at + v * r);
             painter.add(Shape::closed_line(p.to_vec(), line));
+        }
+        Glyph::Node => {
+            painter.circle_stroke(at, r * 0.45, line);
+            for (x, y) in [(0.0, -1.0), (0.87, 0.5), (-0.87, 0.5)] {
+                seg(Vec2::new(x, y) * 0.45, Vec2::new(x, y) * 1.2);
+            }
         }
     }
 }
@@ -115,7 +123,7 @@ pub fn draw(painter: &Painter, centre: Pos2, radius: f32, markers: &Markers) {
 }
 
 /// The directions that are marked, on the ball and in the view.
-pub fn marks(m: &Markers) -> [(DVec3, Glyph, Color32); 8] {
+pub fn marks(m: &Markers) -> [(DVec3, Glyph, Color32); 9] {
     let velocity = Color32::from_rgb(180, 230, 90);
     let normal = Color32::from_rgb(206, 130, 255);
     let radial = Color32::from_rgb(96, 196, 255);
@@ -128,6 +136,7 @@ pub fn marks(m: &Markers) -> [(DVec3, Glyph, Color32); 8] {
         (m.surface_prograde, Glyph::Prograde, Color32::from_rgb(255, 255, 255)),
         (m.prograde, Glyph::Prograde, velocity),
         (m.target, Glyph::Target, style::DANGER),
+        (m.node, Glyph::Node, Color32::from_rgb(92, 150, 255)),
     ]
 }
 

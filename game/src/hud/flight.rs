@@ -167,6 +167,13 @@ fn orbit(ui: &mut Ui, scene: &Scene<'_>) {
     row(ui, WIDTH, "Inclination", &format!("{}°", format::number(o.inclination_rad.to_degrees(), 2)), style::TEXT);
     row(ui, WIDTH, "Eccentricity", &format::number(o.eccentricity, 4), style::TEXT);
     row(ui, WIDTH, "Delta-v", &format!("{} km/s", format::number(r.delta_v_m_s / 1e3, 2)), style::TEXT);
+    if let Some(n) = &r.node {
+        ui.add_space(4.0);
+        ui.label(style::heading("Planned burn"));
+        row(ui, WIDTH, if n.to_burn_s < 0.0 { "Began" } else { "Begins in" }, &format::duration(n.to_burn_s), style::TEXT);
+        row(ui, WIDTH, "Left", &format::speed(n.left_m_s), if n.left_m_s > r.delta_v_m_s { style::DANGER } else { style::TEXT });
+        row(ui, WIDTH, "Burn", &format!("{} s", format::number(n.burn_s, 1)), style::TEXT);
+    }
     let Some(t) = &r.target else { return };
     ui.add_space(4.0);
     ui.label(style::heading("Target"));
@@ -185,7 +192,7 @@ fn holds(ui: &mut Ui, r: &Readout, reply: &mut Reply) {
     const ROWS: [&[(Hold, &str)]; 4] = [
         &[(Hold::Rate, "Rate"), (Hold::KillRotation, "Kill"), (Hold::Free, "Free"), (Hold::SurfaceVertical, "Level")],
         &[(Hold::Prograde, "Pro"), (Hold::Retrograde, "Retro"), (Hold::Normal, "Nml"), (Hold::AntiNormal, "A-nml")],
-        &[(Hold::RadialOut, "Rad +"), (Hold::RadialIn, "Rad −"), (Hold::Target, "Target")],
+        &[(Hold::RadialOut, "Rad +"), (Hold::RadialIn, "Rad −"), (Hold::Target, "Target"), (Hold::Node, "Burn")],
         &[(Hold::SurfacePrograde, "Srf pro"), (Hold::SurfaceRetrograde, "Srf retro")],
     ];
     ui.label(style::heading("Hold"));
@@ -205,7 +212,8 @@ fn guidance(ui: &mut Ui, r: &Readout, reply: &mut Reply) {
     ui.label(style::heading("Guidance"));
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
-        for (choice, name) in [(Guidance::Manual, "Manual"), (Guidance::Hover, "Hover"), (Guidance::Land, "Land")] {
+        for (choice, name) in [(Guidance::Manual, "Manual"), (Guidance::Hover, "Hover"), (Guidance::Land, "Land"), (Guidance::Node, "Burn")]
+        {
             if style::toggle(ui, r.guidance == choice, name).clicked() {
                 reply.actions.push(Action::Guidance(choice));
             }

@@ -26,7 +26,7 @@ pub fn draw(painter: &Painter, screen: Rect, scene: &Scene<'_>) {
     let inside = screen.shrink(8.0);
     let q = scene.readout.icrf_from_hull;
     for (direction, kind, colour) in marks(&scene.readout.markers) {
-        let shown = matches!(kind, Glyph::Prograde | Glyph::Retrograde | Glyph::Target);
+        let shown = matches!(kind, Glyph::Prograde | Glyph::Retrograde | Glyph::Target | Glyph::Node);
         if !shown || direction == glam::DVec3::ZERO || !direction.is_finite() {
             continue;
         }

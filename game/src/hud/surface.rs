@@ -12,6 +12,8 @@ use engine::space::relative::narrow;
 use engine::space::sphere;
 
 const SIZE: [usize; 2] = [360, 180];
+/// A globe goes on where the picture begins anew.
+const PICTURE: TextureOptions = TextureOptions { wrap_mode: egui::TextureWrapMode::Repeat, ..TextureOptions::LINEAR };
 /// Rows of the picture that are sampled in a frame: the map fills within a second and the game stays fluent.
 const ROWS_A_FRAME: usize = 6;
 
@@ -108,6 +110,12 @@ pub fn show(ctx: &egui::Context, scene: &Scene<'_>, view: &mut SurfaceView, opac
 }
 
 impl SurfaceView {
+    /// The picture of a body as far as it is made; some more rows of the relief are sampled in each frame.
+    pub fn picture(&mut self, ctx: &egui::Context, scene: &Scene<'_>, id: BodyId) -> Option<egui::TextureId> {
+        self.sample(ctx, scene, id);
+        self.texture.as_ref().map(TextureHandle::id)
+    }
+
     /// Samples some more rows of the relief and remakes the picture.
     fn sample(&mut self, ctx: &egui::Context, scene: &Scene<'_>, id: BodyId) {
         if self.body != Some(id) {
@@ -135,8 +143,8 @@ impl SurfaceView {
         }
         let image = ColorImage::new(SIZE, pixels);
         match &mut self.texture {
-            Some(texture) => texture.set(image, TextureOptions::LINEAR),
-            None => self.texture = Some(ctx.load_texture("surface", image, TextureOptions::LINEAR)),
+            Some(texture) => texture.set(image, PICTURE),
+            None => self.texture = Some(ctx.load_texture("surface", image, PICTURE)),
         }
         ctx.request_repaint();
     }

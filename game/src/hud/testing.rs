@@ -40,6 +40,7 @@ pub fn readout() -> Readout {
             zenith: DVec3::Y,
             north: DVec3::new(-0.6, 0.0, -0.8),
             target: DVec3::ZERO,
+            node: DVec3::ZERO,
             sun: DVec3::new(0.3, 0.8, 0.2).normalize(),
         },
         density_kg_m3: 0.0,
@@ -58,6 +59,7 @@ pub fn readout() -> Readout {
         guidance: Guidance::Manual,
         guidance_phase: "",
         target: None,
+        node: None,
         sun_visible: 1.0,
         eclipsed_by: None,
         eclipse: None,
@@ -69,7 +71,7 @@ pub fn readout() -> Readout {
 /// Readouts with values that a display must survive.
 pub fn extremes() -> Vec<Readout> {
     use crate::command::{Spot, Target};
-    use crate::world::readout::{TargetReadout, Warning};
+    use crate::world::readout::{NodeReadout, TargetReadout, Warning};
     let mut escape = readout();
     escape.orbit = OrbitReadout {
         apoapsis_m: f64::INFINITY,
@@ -90,7 +92,8 @@ pub fn extremes() -> Vec<Readout> {
     });
     let broken = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, f64::MAX].map(|x| {
         let v = DVec3::splat(x);
-        let markers = Markers { prograde: v, surface_prograde: v, normal: v, radial_out: v, zenith: v, north: v, target: v, sun: v };
+        let markers =
+            Markers { prograde: v, surface_prograde: v, normal: v, radial_out: v, zenith: v, north: v, target: v, node: v, sun: v };
         Readout {
             altitude_m: x,
             ground_m: x,
@@ -119,6 +122,7 @@ pub fn extremes() -> Vec<Readout> {
             delta_v_m_s: x,
             sun_visible: x,
             last_contact: Some((x, 0)),
+            node: Some(NodeReadout { count: 3, to_node_s: x, to_burn_s: x, burn_s: x, dv_m_s: x, left_m_s: x }),
             target: Some(TargetReadout { distance_m: x, closing_m_s: x, ground_distance_m: Some(x), ..escape.target.unwrap() }),
             ..readout()
         }
@@ -134,13 +138,19 @@ pub fn world() -> crate::world::World {
 }
 
 /// Runs two frames of a HUD without a window and returns the texts of the second one.
-pub fn run(mut show: impl FnMut(&egui::Context)) -> Vec<String> {
+pub fn run(show: impl FnMut(&egui::Context)) -> Vec<String> {
+    run_at((1280.0, 720.0), 1.0, show)
+}
+
+/// The same in a window of so many points, each of so many pixels.
+pub fn run_at(size: (f32, f32), pixels_per_point: f32, mut show: impl FnMut(&egui::Context)) -> Vec<String> {
     let ctx = egui::Context::default();
+    ctx.set_pixels_per_point(pixels_per_point);
     super::style::apply(&ctx);
     let mut texts = Vec::new();
     for _ in 0..2 {
         let input = egui::RawInput {
-            screen_rect: Some(egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(1280.0, 720.0))),
+            screen_rect: Some(egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(size.0, size.1))),
             ..Default::default()
         };
         let output = ctx.run_ui(input, |ui| show(ui.ctx()));
@@ -153,7 +163,7 @@ pub fn run(mut show: impl FnMut(&egui::Context)) -> Vec<String> {
             let missing: String = text.chars().filter(|c| !c.is_whitespace() && !ctx.fonts_mut(|f| f.has_glyph(&font, *c))).collect();
             assert!(missing.is_empty(), "no font has `{missing}` of `{text}`");
         }
-        let _ = ctx.tessellate(output.shapes.clone(), 1.0);
+        let _ = ctx.tessellate(output.shapes.clone(), pixels_per_point);
         output.drop_without_applying_deltas();
     }
     texts

@@ -182,6 +182,7 @@ fn places_of(mode: &Mode) -> &Places {
         Mode::Probe(Probe::Eclipses(a)) => &a.common.places,
         Mode::Probe(Probe::Propagate(a)) => &a.common.places,
         Mode::Bench(Bench::Orbit(a)) => &a.places,
+        Mode::Bench(Bench::Ships(a)) => &a.places,
     }
 }
 

@@ -1,8 +1,9 @@
 //! A small World for the tests of saves and replays: a star and one bare body, a ship in each kind of motion.
 
-use crate::command::{Guidance, Hold, Spot, Target};
+use crate::command::{Guidance, Hold, Node, Spot, Target};
 use crate::world::World;
-use crate::world::ship::guidance::{Landing, Phase};
+use crate::world::ship::guidance::burn::Stage;
+use crate::world::ship::guidance::{Burn, Landing, Phase};
 use crate::world::ship::spec::tests::torch;
 use crate::world::ship::{Effort, Motion, Resting, Rigid, Ship};
 use crate::world::system::{Body, System};
@@ -92,5 +93,19 @@ pub(crate) fn worlds() -> Vec<World> {
         quiet_ticks: 17,
         touching: true,
     };
-    vec![coasting, flying, landing, touching, world(Motion::Landed(resting())), world(Motion::Crashed(resting()))]
+    let mut burning = flying.clone();
+    burning.ship.guidance = Guidance::Node;
+    burning.ship.hold = Hold::Node;
+    burning.warp_to = Some(SimTime::from_ticks(50_400_050_000));
+    burning.ship.nodes = vec![
+        Node { at: SimTime::from_ticks(50_400_100_000), dv_mm_s: [120_000, -7, 3_000] },
+        Node { at: SimTime::from_ticks(50_500_000_000), dv_mm_s: [0, i32::MIN, i32::MAX] },
+    ];
+    burning.ship.burn = Some(Burn {
+        to_gain: DVec3::new(0.1, -120.0, 1.0 / 3.0),
+        aim: DVec3::NEG_Y,
+        spent: true,
+        phase: Stage::Wait { turn: SimTime::from_ticks(50_400_090_000) },
+    });
+    vec![coasting, flying, landing, touching, burning, world(Motion::Landed(resting())), world(Motion::Crashed(resting()))]
 }

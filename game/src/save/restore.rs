@@ -2,11 +2,14 @@
 //!
 //! All problems are found at once, each named by its field. Nothing is silently replaced by a default.
 
-use super::v1::{CoastAttitudeV1, GroundV1, KnotV1, LandingV1, MotionV1, PhaseV1, RestingV1, RigidV1, SaveV1, StateV1};
-use crate::command::{Spot, Target, WARP_QUARTERS};
+use super::v1::{
+    BurnV1, CoastAttitudeV1, GroundV1, KnotV1, LandingV1, MotionV1, NodeV1, PhaseV1, RestingV1, RigidV1, SaveV1, ShipV1, StageV1, StateV1,
+};
+use crate::command::{MOST_NODES, Node, Spot, Target, WARP_QUARTERS};
 use crate::world::World;
 use crate::world::ship::contact::Ground;
-use crate::world::ship::guidance::{Landing, Phase};
+use crate::world::ship::guidance::burn::Stage;
+use crate::world::ship::guidance::{Burn, Landing, Phase};
 use crate::world::ship::spec::ShipSpec;
 use crate::world::ship::{Coast, CoastAttitude, Effort, Motion, Resting, Rigid, Ship};
 use crate::world::system::System;
@@ -67,10 +70,11 @@ impl SaveV1 {
             });
             Target { body: c.body("target.body", &t.body), spot }
         });
+        let warp_to = self.warp_to_ticks.map(|t| c.ticks("warp_to_ticks", t));
         let ship = c.ship(self, spec);
         if c.problems.is_empty() {
             let Self { quarters, warp, warp_asked, .. } = *self;
-            Ok(World { system: Arc::clone(system), time, quarters, warp, warp_asked, ship, target })
+            Ok(World { system: Arc::clone(system), time, quarters, warp, warp_asked, ship, target, warp_to })
         } else {
             Err(c.problems)
         }
@@ -233,6 +237,26 @@ impl Checker<'_> {
         let legs = g.legs.iter().take(MOST_LEGS).map(|l| leg(self, l)).collect();
         Ground { contact: Contact { key, legs, quiet_ticks: g.quiet_ticks, touching: g.touching }, ..Ground::default() }
     }
+    fn nodes(&mut self, s: &ShipV1) -> Vec<Node> {
+        if s.nodes.len() > MOST_NODES || !s.nodes.is_sorted_by_key(|n| n.at_ticks) {
+            self.problems.push(format!("ship.nodes: {}, expected at most {MOST_NODES}, in order of time", s.nodes.len()));
+        }
+        let node = |c: &mut Self, n: &NodeV1| Node { at: c.ticks("ship.nodes.at_ticks", n.at_ticks), dv_mm_s: n.dv_mm_s };
+        s.nodes.iter().take(MOST_NODES).map(|n| node(self, n)).collect()
+    }
+    fn burn(&mut self, b: &BurnV1) -> Burn {
+        let aim = self.vector("ship.burn.aim", b.aim, 1.0 + 1e-9);
+        if (aim.length() - 1.0).abs() > 1e-6 {
+            self.problems.push(format!("ship.burn.aim: length {}, expected a unit vector", aim.length()));
+        }
+        let phase = match b.stage {
+            StageV1::Wait(turn) => Stage::Wait { turn: self.ticks("ship.burn.stage.Wait", turn) },
+            StageV1::Turn => Stage::Turn,
+            StageV1::Burn => Stage::Burn,
+            StageV1::Trim => Stage::Trim,
+        };
+        Burn { to_gain: self.vector("ship.burn.to_gain_m_s", b.to_gain_m_s, SPEED_OF_LIGHT), aim, spent: b.spent, phase }
+    }
     fn ship(&mut self, save: &SaveV1, spec: &Arc<ShipSpec>) -> Ship {
         let s = &save.ship;
         let [throttle, rcs, felt_m_s2] = s.effort;
@@ -256,6 +280,8 @@ impl Checker<'_> {
                 .last_contact
                 .map(|(speed, at)| (self.within("ship.last_contact.0", speed, 0.0, SPEED_OF_LIGHT), self.ticks("ship.last_contact.1", at))),
             ground: self.ground(&s.ground),
+            nodes: self.nodes(s),
+            burn: s.burn.as_ref().map(|b| self.burn(b)),
         }
     }
 }

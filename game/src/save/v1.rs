@@ -7,7 +7,8 @@
 use crate::command::{Guidance, Hold};
 use crate::world::World;
 use crate::world::ship::contact::Ground;
-use crate::world::ship::guidance::{Landing, Phase};
+use crate::world::ship::guidance::burn::Stage;
+use crate::world::ship::guidance::{Burn, Landing, Phase};
 use crate::world::ship::{Coast, CoastAttitude, Effort, Motion, Resting, Rigid, Ship};
 use crate::world::system::System;
 use engine::orbit::path::Knot;
@@ -39,6 +40,9 @@ pub struct SaveV1 {
     pub warp_asked: u8,
     /// What the pilot points at.
     pub target: Option<TargetV1>,
+    /// Until when the clock hurries, ticks since J2000 TDB.
+    #[serde(default)]
+    pub warp_to_ticks: Option<i64>,
     /// The ship.
     pub ship: ShipV1,
 }
@@ -82,6 +86,50 @@ pub struct ShipV1 {
     /// What it keeps about the ground.
     #[serde(default)]
     pub ground: GroundV1,
+    /// Planned burns.
+    #[serde(default)]
+    pub nodes: Vec<NodeV1>,
+    /// The first of them as it is flown.
+    #[serde(default)]
+    pub burn: Option<BurnV1>,
+}
+
+/// A planned burn, as kept.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct NodeV1 {
+    /// Ticks since J2000 TDB.
+    pub at_ticks: i64,
+    /// Along (velocity, normal, outward), mm/s.
+    pub dv_mm_s: [i32; 3],
+}
+
+/// A burn as it is flown, as kept.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BurnV1 {
+    /// ICRF axes, m/s.
+    pub to_gain_m_s: [f64; 3],
+    /// Unit vector, ICRF axes.
+    pub aim: [f64; 3],
+    /// Begun?
+    pub spent: bool,
+    /// Where it stands.
+    pub stage: StageV1,
+}
+
+/// A stage of a burn, as kept.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum StageV1 {
+    /// Until this tick.
+    Wait(i64),
+    /// Turning.
+    Turn,
+    /// Main engine.
+    Burn,
+    /// RCS.
+    Trim,
 }
 
 /// Memory of contact, as kept.
@@ -328,6 +376,8 @@ impl Keeper<'_> {
             held,
             guidance,
             landing,
+            nodes,
+            burn,
             effort: Effort { throttle: effort_throttle, rcs, felt_m_s2 },
             last_contact,
             // Of the ground only its memory is state: the mesh follows from it, the recorder looks back.
@@ -352,13 +402,15 @@ impl Keeper<'_> {
                 quiet_ticks: *quiet_ticks,
                 touching: *touching,
             },
+            nodes: nodes.iter().map(|n| NodeV1 { at_ticks: n.at.ticks, dv_mm_s: n.dv_mm_s }).collect(),
+            burn: burn.as_ref().map(burn_of),
         }
     }
 }
 
 impl From<&World> for SaveV1 {
     fn from(world: &World) -> Self {
-        let World { system, time, quarters, warp, warp_asked, ship, target } = world;
+        let World { system, time, quarters, warp, warp_asked, ship, target, warp_to } = world;
         let keeper = Keeper(system);
         Self {
             game_version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -370,11 +422,22 @@ impl From<&World> for SaveV1 {
             warp: *warp,
             warp_asked: *warp_asked,
             target: target.map(|t| TargetV1 { body: keeper.key(t.body), spot_udeg: t.spot.map(|s| (s.lat_udeg, s.lon_udeg)) }),
+            warp_to_ticks: warp_to.map(|t| t.ticks),
             ship: keeper.ship(ship),
         }
     }
 }
 
+fn burn_of(b: &Burn) -> BurnV1 {
+    let Burn { to_gain, aim, spent, phase } = *b;
+    let stage = match phase {
+        Stage::Wait { turn } => StageV1::Wait(turn.ticks),
+        Stage::Turn => StageV1::Turn,
+        Stage::Burn => StageV1::Burn,
+        Stage::Trim => StageV1::Trim,
+    };
+    BurnV1 { to_gain_m_s: vec(to_gain), aim: vec(aim), spent, stage }
+}
 fn quat(q: DQuat) -> [f64; 4] {
     q.to_array()
 }

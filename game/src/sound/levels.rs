@@ -131,9 +131,10 @@ pub(crate) mod tests {
             guidance: Guidance::Manual,
             guidance_phase: "",
             target: None,
+            node: None,
             sun_visible: 1.0,
             eclipsed_by: None,
-        eclipse: None,
+            eclipse: None,
             warnings: Vec::new(),
             last_contact: None,
         }

@@ -124,6 +124,7 @@ impl World {
             Guidance::Hover => (1, 0),
             Guidance::VerticalSpeed { cm_s } => (2, i64::from(cm_s)),
             Guidance::Land => (3, 0),
+            Guidance::Node => (4, 0),
         };
         f.int("guidance", "guidance", kind);
         f.int("guidance", "guidance.value", value);
@@ -149,6 +150,23 @@ impl World {
             f.real("guidance", "landing.ground_m", landing.ground_m);
             f.real("guidance", "landing.gate_m", landing.gate_m);
             f.real("guidance", "landing.arrival_rad", landing.arrival_rad);
+        }
+        if let Some(to) = self.warp_to {
+            f.int("time", "warp_to", to.ticks);
+        }
+        for node in &ship.nodes {
+            f.int("guidance", "node.at", node.at.ticks);
+            for (name, x) in ["node.prograde", "node.normal", "node.radial"].into_iter().zip(node.dv_mm_s) {
+                f.int("guidance", name, i64::from(x));
+            }
+        }
+        if let Some(burn) = &ship.burn {
+            let (phase, at) = burn.phase.code();
+            f.int("guidance", "burn.phase", phase);
+            f.int("guidance", "burn.at", at);
+            f.int("guidance", "burn.spent", i64::from(burn.spent));
+            f.vector("guidance", ["burn.to_gain.x", "burn.to_gain.y", "burn.to_gain.z"], burn.to_gain);
+            f.vector("guidance", ["burn.aim.x", "burn.aim.y", "burn.aim.z"], burn.aim);
         }
         f.0
     }

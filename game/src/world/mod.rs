@@ -48,6 +48,8 @@ pub struct World {
     pub ship: Ship,
     /// What the pilot points at.
     pub target: Option<Target>,
+    /// The clock runs as fast as it may until shortly before this moment.
+    pub warp_to: Option<SimTime>,
 }
 
 /// How many ticks apart a flying ship asks whether another body dominates by now.
@@ -61,10 +63,15 @@ impl World {
             self.act(*action);
         }
         self.wake_ship(commands.axes);
+        let hurried = self.hurry();
         self.warp = self.warp_asked.min(self.warp_limit());
         let quarters = u32::from(self.quarters) + WARP_QUARTERS[usize::from(self.warp)];
         self.quarters = u8::try_from(quarters % 4).unwrap_or(0);
         self.advance(i64::from(quarters / 4), commands.axes);
+        if self.warp_asked < hurried {
+            // Something came up that the pilot should see.
+            self.warp_to = None;
+        }
     }
 
     /// Goes on in a system whose files were changed, if it has the same bodies; false, and nothing is changed, if not. The ship
@@ -105,11 +112,17 @@ impl World {
         let ship = &mut self.ship;
         match action {
             Action::Throttle(throttle) => ship.throttle = throttle,
-            Action::Hold(hold) => (ship.hold, ship.held) = (hold, None),
+            Action::Hold(hold) => {
+                (ship.hold, ship.held) = (hold, None);
+                if hold == Hold::Node {
+                    self.leave_path();
+                }
+            }
             Action::Guidance(guidance) => {
                 ship.guidance = guidance;
                 ship.landing = None;
                 ship.held = None;
+                ship.burn = ship.burn.filter(|b| b.spent);
                 if guidance == Guidance::Manual {
                     ship.throttle = 0;
                 }
@@ -117,7 +130,7 @@ impl World {
             // Weight on the gear (or on the belly) locks it.
             Action::Gear(_) if contact::stands(ship) => {}
             Action::Gear(down) => ship.gear_down = down,
-            Action::Warp(level) => self.warp_asked = level.min(warp::TOP_LEVEL),
+            Action::Warp(level) => (self.warp_asked, self.warp_to) = (level.min(warp::TOP_LEVEL), None),
             Action::Target(target) => {
                 self.target = target.filter(|t| t.body.index() < self.system.bodies.len());
                 if ship.guidance == Guidance::Land {
@@ -130,6 +143,18 @@ impl World {
             Action::Refuel => ship.propellant_kg = ship.spec.mass.propellant_kg,
             // The session keeps and restores whole worlds; within one there is nothing to do.
             Action::Quicksave | Action::Quickload => {}
+            Action::AddNode(_) | Action::ChangeNode(..) | Action::DeleteNode(_) => {
+                ship.edit_nodes(action, self.time);
+                if ship.hold == Hold::Node || ship.guidance == Guidance::Node {
+                    self.leave_path();
+                }
+            }
+            Action::WarpTo(to) => {
+                self.warp_to = to;
+                if to.is_none() {
+                    self.warp_asked = self.warp_asked.min(WARP_ONE);
+                }
+            }
         }
     }
 
@@ -141,8 +166,8 @@ impl World {
                 let held = match coast.attitude {
                     CoastAttitude::Inertial { rate, .. } => match self.ship.hold {
                         Hold::Free => true,
-                        Hold::Rate => rate == DVec3::ZERO,
-                        _ => self.ship.guidance == Guidance::Land && rate == DVec3::ZERO,
+                        Hold::Rate | Hold::Node => rate == DVec3::ZERO,
+                        _ => matches!(self.ship.guidance, Guidance::Land | Guidance::Node) && rate == DVec3::ZERO,
                     },
                     CoastAttitude::Held { hold, .. } => hold == self.ship.hold && self.ship.guidance == Guidance::Manual,
                 };
@@ -162,14 +187,28 @@ impl World {
         }
     }
 
+    /// Sets the warp that a hurry to [`World::warp_to`] asks for now, and tells it; 0 without one.
+    fn hurry(&mut self) -> u8 {
+        let Some(to) = self.warp_to else { return 0 };
+        self.warp_asked = warp::hurried_level(to.ticks - self.time.ticks);
+        if self.warp_asked <= WARP_ONE {
+            self.warp_to = None;
+        }
+        self.warp_asked
+    }
+
     /// The highest warp level that the ship's motion allows now.
     fn warp_limit(&mut self) -> u8 {
         let planned = self.planned();
         match &mut self.ship.motion {
             Motion::Coast(coast) => {
                 let met = coast.ahead.first(&self.system, &coast.path, self.time, self.warp_asked);
-                let first = met.into_iter().chain(planned).min();
-                first.map_or(u8::MAX, |at| warp::level_before(at.ticks - self.time.ticks))
+                let ahead = |at: SimTime| at.ticks - self.time.ticks;
+                // A burn that the pilot planned surprises nobody.
+                let hurried = planned.filter(|_| self.ship.guidance == Guidance::Node);
+                let first = met.into_iter().chain(planned.filter(|_| hurried.is_none())).min();
+                let limit = first.map_or(u8::MAX, |at| warp::level_before(ahead(at)));
+                hurried.map_or(limit, |at| limit.min(warp::hurried_level(ahead(at))))
             }
             Motion::Fly(_) | Motion::Contact(_) => warp::FLY_LEVEL,
             _ => u8::MAX,
@@ -178,7 +217,7 @@ impl World {
 
     /// When the autopilot wants to fly, if it waits for that.
     fn planned(&self) -> Option<SimTime> {
-        self.ship.landing.as_ref().and_then(ship::guidance::Landing::wake).map(|at| at.max(self.time))
+        self.ship.planned_wake().map(|at| at.max(self.time))
     }
 
     /// Lets simulated time pass. What remains of a tick's share is dropped when the clock must slow down.

@@ -2,7 +2,7 @@
 
 use super::World;
 use super::eclipse::{self, Sky};
-use super::readout::{EclipseReadout, Markers, OrbitReadout, Readout, Situation, TargetReadout, Warning};
+use super::readout::{EclipseReadout, Markers, NodeReadout, OrbitReadout, Readout, Situation, TargetReadout, Warning};
 use super::ship::local::{Local, ground_m};
 use super::ship::{Motion, Rigid, aero, attitude, warp};
 use crate::command::{Guidance, Target};
@@ -75,6 +75,7 @@ impl World {
             guidance: ship.guidance,
             guidance_phase: self.phase(),
             target: self.target.map(|t| self.target_readout(&local, t)),
+            node: self.node_readout(),
             sun_visible,
             eclipsed_by,
             eclipse: self.eclipse(rigid.body),
@@ -90,6 +91,7 @@ impl World {
             Guidance::Manual => "",
             Guidance::Hover => "Hovering",
             Guidance::VerticalSpeed { .. } => "Holding vertical speed",
+            Guidance::Node => self.ship.burn.as_ref().map_or("Planning the burn", |b| b.phase.describe()),
             Guidance::Land => self.ship.landing.as_ref().map_or("Planning the landing", |l| l.phase.describe()),
         }
     }
@@ -106,8 +108,23 @@ impl World {
             zenith: hull(local.up),
             north: hull(north),
             target: self.target.map_or(DVec3::ZERO, |t| hull(attitude::target_offset(&self.system, local, self.time, t))),
+            node: self.ship.burn.as_ref().map_or(DVec3::ZERO, |b| hull(b.aim)),
             sun: hull(attitude::offset_of_body(&self.system, rigid.body, BodyId(0), self.time) - local.r),
         }
+    }
+
+    fn node_readout(&self) -> Option<NodeReadout> {
+        let ship = &self.ship;
+        let node = ship.nodes.first()?;
+        let left_m_s = ship.burn.as_ref().map_or(node.size_m_s(), |b| b.to_gain.length());
+        Some(NodeReadout {
+            count: ship.nodes.len(),
+            to_node_s: node.at.since(self.time),
+            to_burn_s: ship.burn_start(node).since(self.time),
+            burn_s: ship.burn_s(left_m_s),
+            dv_m_s: node.size_m_s(),
+            left_m_s,
+        })
     }
 
     fn target_readout(&self, local: &Local, target: Target) -> TargetReadout {

@@ -80,6 +80,8 @@ pub struct Markers {
     pub north: DVec3,
     /// Towards the target; zero if none.
     pub target: DVec3,
+    /// Along the next planned burn; zero until something asks for it.
+    pub node: DVec3,
     /// Towards the star.
     pub sun: DVec3,
 }
@@ -108,6 +110,23 @@ pub struct EclipseReadout {
     pub to_greatest_s: f64,
     /// Seconds until the penumbra leaves.
     pub to_last_s: f64,
+}
+
+/// The next planned burn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NodeReadout {
+    /// Planned burns in all.
+    pub count: usize,
+    /// Seconds to the node (negative: it has passed).
+    pub to_node_s: f64,
+    /// Seconds to the start of the burn.
+    pub to_burn_s: f64,
+    /// How long the main engine burns for what is left, s.
+    pub burn_s: f64,
+    /// Size of the burn as planned, m/s.
+    pub dv_m_s: f64,
+    /// What is left of it, m/s.
+    pub left_m_s: f64,
 }
 
 /// Everything the HUD shows and the sound follows.
@@ -177,6 +196,8 @@ pub struct Readout {
     pub guidance_phase: &'static str,
     /// The target, if any.
     pub target: Option<TargetReadout>,
+    /// The next planned burn, if any.
+    pub node: Option<NodeReadout>,
     /// Fraction of the sun's disc that is free at the ship, 0 … 1.
     pub sun_visible: f64,
     /// The body that hides the sun, if one does.

@@ -133,7 +133,7 @@ pub enum StartError {
 impl World {
     /// A World in which `ship` moves as it does, at `time`, at 1×.
     pub fn new(system: Arc<System>, time: SimTime, ship: Ship) -> Self {
-        let mut world = Self { system, time, quarters: 0, warp: WARP_ONE, warp_asked: WARP_ONE, ship, target: None };
+        let mut world = Self { system, time, quarters: 0, warp: WARP_ONE, warp_asked: WARP_ONE, ship, target: None, warp_to: None };
         if matches!(world.ship.motion, Motion::Fly(_)) {
             world.enter_path();
         }

@@ -5,14 +5,16 @@ use super::ship::local::air_top_m;
 use super::ship::warp::floor_m;
 use engine::air::Medium;
 use engine::air::density::Column;
-use engine::orbit::BodyId;
 use engine::orbit::eclipse::Shape;
 use engine::orbit::ephemeris::Ephemeris;
 use engine::orbit::field::{Bound, Source};
 use engine::orbit::gravity::figure::Figure;
-use engine::orbit::path::{self, Model};
+use engine::orbit::path::{self, End, Knot, Model, Path, Setting};
 use engine::orbit::rotation::Spin;
+use engine::orbit::{BodyId, State, kepler};
+use engine::space::Centred;
 use engine::terrain::Relief;
+use engine::time::SimTime;
 use glam::Vec3;
 use std::sync::Arc;
 
@@ -100,6 +102,23 @@ impl System {
     pub fn body(&self, id: BodyId) -> &Body {
         &self.bodies[id.index()]
     }
+    /// Where a ship that coasts from a state about `host` at `from` will be: the body that dominates there, and the state about it.
+    /// Before `from`, and beyond the ground, the state from which there is no further.
+    pub fn ahead(&self, host: BodyId, state: &State<Centred>, from: SimTime, to: SimTime) -> (BodyId, State<Centred>) {
+        if to <= from {
+            return (host, kepler::propagate(self.body(host).gm_m3_s2, state, to.since(from)));
+        }
+        let knot = Knot::new(host, from, state);
+        let setting = Setting { to_ground: true, ..Setting::default() };
+        let mut path = Path::with(&self.gravity, &self.ephemeris, knot, setting);
+        while let Some(event) = path.advance(&self.gravity, &self.ephemeris, to) {
+            if event.end == End::Low {
+                return (path.host(), path.step().sample(event.at));
+            }
+        }
+        (path.host(), path.sample(to))
+    }
+
     /// The handle of a key.
     #[allow(clippy::cast_possible_truncation)]
     pub fn find(&self, key: &str) -> Option<BodyId> {

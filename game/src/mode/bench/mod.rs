@@ -10,6 +10,7 @@ pub mod orbit_method;
 pub mod orbit_plot;
 pub mod orbit_rows;
 pub mod orbit_stress;
+pub mod ships;
 
 use super::Error;
 use crate::cli::Bench;
@@ -18,5 +19,6 @@ use crate::cli::Bench;
 pub fn run(bench: &Bench) -> Result<(), Error> {
     match bench {
         Bench::Orbit(args) => orbit::run(args),
+        Bench::Ships(args) => ships::run(args),
     }
 }

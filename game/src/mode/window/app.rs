@@ -239,7 +239,9 @@ impl App {
             Focus::Text
         } else if self.hud.screen.runs() && !self.hud.help && self.hud.message.is_none() {
             let free = self.hud.screen == Screen::Flight && self.flight.as_ref().is_some_and(|f| f.rig.mode == CameraMode::Free);
-            if free { Focus::Camera } else { Focus::Flight }
+            // Shift is finer there, and no throttle.
+            let editing = self.hud.screen == Screen::Map && self.hud.map.editing();
+            if free || editing { Focus::Camera } else { Focus::Flight }
         } else {
             Focus::Menu
         };
@@ -279,7 +281,11 @@ impl App {
             flight.rig.look(left * rate, up * rate);
         }
         let zoom = f64::from(i8::from(self.input.held(Control::ZoomOut)) - i8::from(self.input.held(Control::ZoomIn)));
-        if zoom != 0.0 {
+        if zoom != 0.0 && self.hud.screen == Screen::Map {
+            if !self.hud.map.editing() {
+                self.hud.map.zoom(libm::exp(zoom * 1.5 * dt_s.min(0.1)));
+            }
+        } else if zoom != 0.0 {
             zoomed(flight, zoom * 1.5 * dt_s.min(0.1));
         }
         if self.hud.screen == Screen::Flight {

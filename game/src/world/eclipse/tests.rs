@@ -156,6 +156,8 @@ fn a_visitor_on_the_ground_stands_in_the_dark() {
         let (mut world, e) = visit(&s, &event, Seat::Ground);
         assert!((e.greatest.since(world.time.into()) - visit::BEFORE_S).abs() < 0.1);
         assert!(on == "moon" || world.readout().sun_visible > 0.0, "not yet");
+        let star = world.readout().markers.sun;
+        assert!(star.x.abs() < 0.1 && (star.z < 0.0 || star.y > 0.9), "the star stands ahead, or overhead: {star}");
         world.move_clock(e.greatest.tick);
         let readout = world.readout();
         assert!(readout.sun_visible == 0.0 && readout.eclipsed_by == Some(event.by), "{on}: {}", readout.sun_visible);

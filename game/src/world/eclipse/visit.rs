@@ -61,7 +61,16 @@ pub fn start(system: &System, event: &Event, ship: &str, seat: Seat) -> Option<S
     let (spot_lat, spot_lon) = degrees(up);
     let key = body.key.clone();
     let place = match seat {
-        Seat::Ground => Place::Ground { body: key.clone(), lat_deg: spot_lat, lon_deg: spot_lon, heading_deg: 90.0 },
+        Seat::Ground => {
+            // The nose towards the star: what is come for stands ahead.
+            let to_star = with_paths(system, event, |cast, paths| {
+                let star = paths(cast.star.id, begin.into()).position - paths(event.on, begin.into()).position;
+                body.spin.icrf_from_fixed(begin).inverse().raw(star.0)
+            })?;
+            let (east, _, north) = sphere::east_up_north(up);
+            let heading_deg = libm::atan2(to_star.dot(east), to_star.dot(north)) / DEG;
+            Place::Ground { body: key.clone(), lat_deg: spot_lat, lon_deg: spot_lon, heading_deg }
+        }
         Seat::Orbit => {
             let altitude_m = (HEIGHT * body.radius_m).max(1.3 * body.air.as_ref().map_or(0.0, |a| a.column.top_m));
             let r = body.radius_m + altitude_m;

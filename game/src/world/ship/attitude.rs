@@ -173,7 +173,8 @@ pub fn hold_frame(hold: Hold, local: &Local, target: Option<Target>) -> Option<D
     let radial = local.v.cross(normal);
     let flat = |nose: DVec3| (normal.length_squared() > 1e-6).then(|| look(nose, local.v));
     match hold {
-        Hold::Rate | Hold::Free | Hold::KillRotation => None,
+        // The burn's direction stands still: see `guidance::burn`.
+        Hold::Rate | Hold::Free | Hold::KillRotation | Hold::Node => None,
         Hold::Prograde => along(local.v),
         Hold::Retrograde => along(-local.v),
         Hold::Normal => along(normal),

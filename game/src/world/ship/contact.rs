@@ -218,7 +218,7 @@ fn finish_landing(ship: &mut Ship, report: &Report, state: &BodyState) {
     let down = match ship.guidance {
         Guidance::Land => true,
         Guidance::VerticalSpeed { cm_s } => cm_s < 0,
-        Guidance::Manual | Guidance::Hover => false,
+        Guidance::Manual | Guidance::Hover | Guidance::Node => false,
     };
     // One foot is enough: on a slope the hold would keep the ship level on it for ever, its engine at idle.
     let stands = ship.ground.contact.legs.iter().any(|l| l.hold_m.is_some()) || !ship.gear_down;

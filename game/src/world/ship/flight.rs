@@ -75,6 +75,7 @@ fn stick(ship: &Ship, local: &Local, rigid: &Rigid, axes: Axes, target: Option<T
         Hold::Free => Demand::Free,
         Hold::KillRotation => Demand::Rate(DVec3::ZERO),
         Hold::Rate => ship.held.map_or(Demand::Rate(DVec3::ZERO), |reference| Demand::Point { reference, rate: DVec3::ZERO }),
+        Hold::Node => ship.burn.as_ref().map_or(Demand::Rate(DVec3::ZERO), |b| b.point(rigid)),
         hold => point(hold, local, rigid, target),
     }
 }
@@ -95,6 +96,7 @@ fn point(hold: Hold, local: &Local, rigid: &Rigid, target: Option<Target>) -> De
 
 /// One physical tick without ground: changes the ship's tanks, nozzles and effort, and says where the hull would be.
 pub fn step(ship: &mut Ship, local: &Local, rigid: &Rigid, axes: Axes, target: Option<Target>) -> Stepped {
+    guidance::burn::ensure(ship, local);
     let controls = match ship.guidance {
         Guidance::Manual => manual(ship, local, rigid, axes, target),
         _ => guidance::controls(ship, local, rigid, axes, target),
@@ -123,9 +125,10 @@ pub fn step(ship: &mut Ship, local: &Local, rigid: &Rigid, axes: Axes, target: O
         icrf_from_hull: Rotation::new(turn.attitude),
         rate: Vector::new(turn.rate),
     };
+    guidance::burn::spend(ship, local, turn.mid_attitude * push.force, push.flow_kg_s);
     thrust::consume(ship, push.flow_kg_s);
     let swinging = ship.nozzle != controls.nozzle;
-    let quiet = turn.settled && push.flow_kg_s == 0.0 && !swinging && air.force == DVec3::ZERO;
+    let quiet = turn.settled && push.flow_kg_s == 0.0 && !swinging && air.force == DVec3::ZERO && !stirred(ship, axes);
     Stepped { free, loads: Loads { force, torque: turn.torque + air.moment, mass_kg: mass, inertia_kg_m2: inertia }, quiet }
 }
 
@@ -202,6 +205,7 @@ pub fn stirred(ship: &Ship, axes: Axes) -> bool {
         Guidance::Manual => ((ship.throttle > 0 || translating) && fuelled) || turning,
         Guidance::Hover | Guidance::VerticalSpeed { .. } => true,
         Guidance::Land => !ship.landing.as_ref().is_some_and(guidance::Landing::coasts),
+        Guidance::Node => ship.burn.as_ref().is_none_or(|b| b.wake().is_none()),
     }
 }
 

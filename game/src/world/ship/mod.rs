@@ -10,18 +10,19 @@ pub mod course;
 pub mod flight;
 pub mod guidance;
 pub mod local;
+pub mod nodes;
 pub mod recorder;
 pub mod spec;
 pub mod thrust;
 pub mod warp;
 
-use crate::command::{Guidance, Hold};
+use crate::command::{Guidance, Hold, Node};
 use engine::orbit::path::Path;
 use engine::orbit::{BodyId, State};
 use engine::space::{Centred, Fixed, Hull, Icrf, Position, Rotation, Vector};
 use engine::time::SimTime;
 use glam::{DQuat, DVec3};
-use guidance::Landing;
+use guidance::{Burn, Landing};
 use spec::ShipSpec;
 use std::sync::Arc;
 use warp::Ahead;
@@ -49,6 +50,10 @@ pub struct Ship {
     pub guidance: Guidance,
     /// The landing programme, while [`Guidance::Land`] flies.
     pub landing: Option<Landing>,
+    /// Planned burns, in order of time.
+    pub nodes: Vec<Node>,
+    /// The first of them as it is flown, once that is asked for.
+    pub burn: Option<Burn>,
     /// What the engines did in the last physical tick.
     pub effort: Effort,
     /// Speed of the last touchdown or impact along the ground's normal, m/s, and when.
@@ -160,6 +165,8 @@ impl Ship {
             held: None,
             guidance: Guidance::Manual,
             landing: None,
+            nodes: Vec::new(),
+            burn: None,
             effort: Effort::default(),
             last_contact: None,
             ground: contact::Ground::default(),

@@ -25,6 +25,8 @@ const _: () = assert!(WARP_QUARTERS.len() == TOP_LEVEL as usize + 1);
 pub const FLY_LEVEL: u8 = 4;
 /// An event is approached so that at least this many session ticks remain at any level.
 const APPROACH_TICKS: i64 = 3 * TICKS_PER_SECOND;
+/// The same where the pilot hurries to a moment.
+const HURRY_TICKS: i64 = TICKS_PER_SECOND / 3;
 
 /// Altitude under which a ship is integrated and not sampled, m: the top of the air, or what mountains reach at most.
 pub fn floor_m(body: &Body) -> f64 {
@@ -80,8 +82,18 @@ fn ticks_at(level: u8) -> i64 {
 
 /// The highest level at which `ahead` ticks leave time to see what comes; at least 1×.
 pub fn level_before(ahead: i64) -> u8 {
+    level_with(ahead, APPROACH_TICKS)
+}
+
+/// The highest level at which `ahead` ticks are not jumped over when someone hurries there; at least 1×.
+pub fn hurried_level(ahead: i64) -> u8 {
+    level_with(ahead, HURRY_TICKS)
+}
+
+/// The highest level at which `ahead` ticks last for so many of the session; at least 1×.
+fn level_with(ahead: i64, session: i64) -> u8 {
     let mut level = WARP_ONE;
-    while level < TOP_LEVEL && ticks_at(level + 1) * APPROACH_TICKS <= ahead {
+    while level < TOP_LEVEL && ticks_at(level + 1) * session <= ahead {
         level += 1;
     }
     level

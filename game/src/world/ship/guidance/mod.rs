@@ -1,10 +1,11 @@
 //! Guidance: what flies the throttle in place of the pilot. Hover and vertical speed are here; the automatic landing is a
-//! programme of phases, see [`Landing`].
+//! programme of phases, see [`Landing`]; so is a planned burn, see [`Burn`].
 //!
 //! All of it runs in the physical tick, from the state alone, so it is the same at every warp and in every replay.
 //! Lift comes from the nozzles turned down; the roof points along the wanted push, never further than a tilt limit from
 //! the zenith while hovering.
 
+pub mod burn;
 pub mod landing;
 pub mod plan;
 
@@ -13,6 +14,7 @@ use super::flight::Controls;
 use super::local::Local;
 use super::{Rigid, Ship, thrust};
 use crate::command::{Axes, Guidance, Target};
+pub use burn::Burn;
 use engine::units::DEG;
 use glam::DVec3;
 pub use landing::{Landing, Phase};
@@ -26,6 +28,7 @@ const READY: f64 = 0.9;
 pub fn controls(ship: &mut Ship, local: &Local, rigid: &Rigid, axes: Axes, target: Option<Target>) -> Controls {
     match ship.guidance {
         Guidance::Land => landing::controls(ship, local, rigid, target),
+        Guidance::Node => burn::controls(ship, local, rigid),
         Guidance::VerticalSpeed { cm_s } => hover(ship, local, rigid, axes, f64::from(cm_s) * 0.01),
         Guidance::Hover | Guidance::Manual => hover(ship, local, rigid, axes, 0.0),
     }
