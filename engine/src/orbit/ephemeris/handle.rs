@@ -17,7 +17,7 @@ use glam::DVec3;
 use std::sync::Arc;
 
 /// How far from the epoch a system is integrated where somebody asks, s.
-const REACH_S: f64 = 4.0 * JULIAN_CENTURY;
+const REACH_S: f64 = 10.5 * JULIAN_CENTURY;
 /// A fit may be off by this part of the size of an orbit (of a light moon's: the second) …
 const FIT: [f64; 2] = [1e-13, 1e-11];
 /// … and by this part of the distance from the barycentre, which is a few times what an f64 of it can tell.

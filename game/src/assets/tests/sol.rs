@@ -120,7 +120,8 @@ fn errors_at_other_dates_are_as_stated() {
 
 #[test]
 fn bound_moons_face_their_planets() {
-    // Rotation and orbit come from different sources: IAU and JPL. Optical libration is 2e; what remains is the error of both.
+    // Rotation and orbit come from different sources: IAU and IMCCE. Optical libration is 2e; what remains is the error of both
+    // (Titan: 2°, Ganymede: 2.6°, both in the prime meridian).
     let s = sol();
     for (key, bound_deg) in [
         ("moon", 8.2),
@@ -128,9 +129,9 @@ fn bound_moons_face_their_planets() {
         ("deimos", 3.0),
         ("io", 1.5),
         ("europa", 2.2),
-        ("ganymede", 2.6),
+        ("ganymede", 2.9),
         ("callisto", 1.5),
-        ("titan", 3.6),
+        ("titan", 5.6),
     ] {
         let moon = id(&s, key);
         let planet = s.body(moon).parent.unwrap();
@@ -234,7 +235,7 @@ const STATED: [(&str, [f64; 4]); 9] = [
     ("mercury", [0.0120, 0.130, 0.388, 0.468]),
     ("venus", [0.0077, 0.077, 0.178, 0.264]),
     ("earth", [0.0201, 0.127, 0.268, 0.383]),
-    ("moon", [0.0001, 0.058, 0.429, 0.934]),
+    ("moon", [0.0005, 0.058, 0.429, 0.934]),
     ("mars_barycentre", [0.0131, 0.557, 1.498, 3.555]),
     ("jupiter_barycentre", [0.0128, 1.626, 2.880, 3.309]),
     ("saturn_barycentre", [0.0030, 0.105, 0.895, 1.762]),
