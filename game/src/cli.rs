@@ -3,6 +3,12 @@
 //! Every argument is checked here as far as it can be without opening a file; what it names is opened by the mode
 //! ([`crate::mode`]). Exit codes: 0 done, 1 an error, 2 wrong usage or no GPU, 3 a replay diverged.
 
+mod bench;
+mod eclipses;
+
+pub use bench::{BenchOrbitArgs, BenchShipsArgs};
+pub use eclipses::ProbeEclipsesArgs;
+
 use clap::{Args, Parser, Subcommand};
 use engine::time::SimTime;
 use std::ffi::OsString;
@@ -49,6 +55,9 @@ pub enum Mode {
     /// Ask the simulation for numbers, as JSON or CSV
     #[command(subcommand, after_help = "Example:\n  syzygy probe air --body earth --altitude-m 0 11000 50000")]
     Probe(Probe),
+    /// Measure run time against error
+    #[command(subcommand, after_help = "Example:\n  syzygy bench orbit --case LEO_1000orb --plot plots")]
+    Bench(Bench),
 }
 
 /// Where things are; the same for every mode.
@@ -217,9 +226,32 @@ pub enum Probe {
     /// Height of the ground at points of a CSV file (columns lat_deg, lon_deg)
     #[command(after_help = "Example:\n  syzygy probe height --body earth --points points.csv")]
     Height(ProbeHeightArgs),
+    /// Two-body states after a time, for the starts of a CSV file (columns gm,x,y,z,vx,vy,vz,dt; any consistent units)
+    #[command(after_help = "Example:\n  syzygy probe kepler --cases tests/reference/kepler_cases.csv")]
+    Kepler(ProbeKeplerArgs),
     /// Position and velocity of a body, ICRF axes
     #[command(after_help = "Example:\n  syzygy probe ephemeris --body moon --center earth --tdb 2461265.241041667")]
     Ephemeris(ProbeEphemerisArgs),
+    /// A case of orbital motion by any integrator: where it ends, the energy's error, the cost
+    #[command(
+        after_help = "Example:\n  syzygy probe propagate --case tests/reference/orbit_cases.json --name LEO_1000orb --method gauss_radau --tol 1e-9"
+    )]
+    Propagate(ProbePropagateArgs),
+    /// Eclipses on a body by another: when, what kind, where, and what one place sees
+    #[command(after_help = "Example:\n  syzygy probe eclipses --on earth --by moon --from 2461000 --to 2461500 --at 43.37,-8.40\n  \
+        syzygy probe eclipses --on moon --by earth --from 2461000 --to 2462000")]
+    Eclipses(ProbeEclipsesArgs),
+}
+
+/// What can be measured.
+#[derive(Debug, Subcommand)]
+pub enum Bench {
+    /// Every integrator on every case of the reference data: error against CPU time and evaluations
+    #[command(after_help = "Example:\n  syzygy bench orbit --case LEO_1000orb --method gauss_radau --json leo.json --plot plots")]
+    Orbit(BenchOrbitArgs),
+    /// What choosing the terms of gravity by an error bound costs in error and saves in time
+    #[command(after_help = "Example:\n  syzygy bench ships --json ships.json")]
+    Ships(BenchShipsArgs),
 }
 
 /// Arguments that all probes share.
@@ -264,6 +296,20 @@ pub struct ProbeHeightArgs {
     pub common: ProbeCommon,
 }
 
+/// Arguments of `probe kepler`.
+#[derive(Clone, Debug, Args)]
+pub struct ProbeKeplerArgs {
+    /// Starts: CSV with the columns gm, x, y, z, vx, vy, vz and dt (others are passed over)
+    #[arg(long, value_name = "F.csv")]
+    pub cases: PathBuf,
+    /// Write here instead of stdout
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+    #[command(flatten)]
+    /// Folders.
+    pub places: Places,
+}
+
 /// Arguments of `probe ephemeris`.
 #[derive(Clone, Debug, Args)]
 pub struct ProbeEphemerisArgs {
@@ -276,6 +322,32 @@ pub struct ProbeEphemerisArgs {
     /// Julian dates of TDB
     #[arg(long, value_name = "JD", num_args = 1.., required = true, allow_hyphen_values = true, value_parser = julian_date)]
     pub tdb: Vec<f64>,
+    #[command(flatten)]
+    /// What all probes share.
+    pub common: ProbeCommon,
+}
+
+/// Arguments of `probe propagate`.
+#[derive(Clone, Debug, Args)]
+pub struct ProbePropagateArgs {
+    /// The case, or several by name: JSON of the form of tests/reference/orbit_cases.json
+    #[arg(long, value_name = "F.json")]
+    pub case: PathBuf,
+    /// Which of several cases; `NAME@T` ends at the reference time T
+    #[arg(long, value_name = "NAME")]
+    pub name: Option<String>,
+    /// When it ends, in the case's unit of time (else as the file says)
+    #[arg(long, value_name = "T", value_parser = finite, allow_hyphen_values = true)]
+    pub t: Option<f64>,
+    /// The integrator
+    #[arg(long, value_name = "M")]
+    pub method: String,
+    /// Tolerance of an adaptive method (else its own)
+    #[arg(long, value_name = "T", value_parser = positive, allow_hyphen_values = true, conflicts_with = "dt")]
+    pub tol: Option<f64>,
+    /// Step of a method of fixed step, in the case's unit of time
+    #[arg(long, value_name = "S", value_parser = positive, allow_hyphen_values = true)]
+    pub dt: Option<f64>,
     #[command(flatten)]
     /// What all probes share.
     pub common: ProbeCommon,
@@ -317,6 +389,11 @@ fn finite(text: &str) -> Result<f64, String> {
     text.parse::<f64>().ok().filter(|x| x.is_finite()).ok_or_else(|| "expected a finite number".to_owned())
 }
 
+/// A finite number above 0.
+fn positive(text: &str) -> Result<f64, String> {
+    finite(text).ok().filter(|x| *x > 0.0).ok_or_else(|| "expected a number above 0, for example 1e-9".to_owned())
+}
+
 /// A path that ends in `.png` or `.exr`.
 fn picture(text: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(text);
@@ -334,75 +411,4 @@ impl ShotArgs {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use clap::CommandFactory;
-
-    fn cli(words: &[&str]) -> Result<Cli, clap::Error> {
-        Cli::try_parse_from(std::iter::once("syzygy").chain(words.iter().copied()))
-    }
-
-    #[test]
-    fn the_words_hang_together() {
-        Cli::command().debug_assert();
-    }
-
-    #[test]
-    fn every_subcommand_shows_an_example() {
-        fn walk(command: &mut clap::Command, path: &str) {
-            let help = command.render_long_help().to_string();
-            assert!(path.ends_with("help") || help.contains("Example"), "{path}: {help}");
-            // What an example says is taken by the program, and the starts that it names are there.
-            for line in help.lines().filter(|l| l.starts_with("  syzygy ")) {
-                let words: Vec<&str> = line.split("    ").next().unwrap_or(line).split_whitespace().skip(1).collect();
-                cli(&words).unwrap_or_else(|e| panic!("{line}: {e}"));
-                for pair in words.windows(2).filter(|pair| pair[0] == "--start") {
-                    let start = format!("{}/../assets/starts/{}.toml", env!("CARGO_MANIFEST_DIR"), pair[1]);
-                    assert!(std::path::Path::new(&start).is_file(), "{line}: no start `{}`", pair[1]);
-                }
-            }
-            for sub in command.get_subcommands_mut() {
-                let path = format!("{path} {}", sub.get_name());
-                walk(sub, &path);
-            }
-        }
-        walk(&mut Cli::command(), "syzygy");
-    }
-
-    #[test]
-    fn play_is_what_happens_when_nothing_is_named() {
-        let bare = cli(&["--start", "eclipse", "--size", "800x600"]).unwrap();
-        assert!(bare.mode.is_none());
-        assert_eq!((bare.play.start.as_deref(), bare.play.size), (Some("eclipse"), Some((800, 600))));
-        assert!(matches!(cli(&["play", "--mods", "a", "--mods", "b"]).unwrap().mode, Some(Mode::Play(p)) if p.places.mods.len() == 2));
-    }
-
-    #[test]
-    fn heavy_takes_no_value_or_one_after_an_equals_sign() {
-        let heavy = |words: &[&str]| match cli(words).unwrap().mode {
-            Some(Mode::Replay(r)) => (r.heavy, r.files.len()),
-            other => panic!("{other:?}"),
-        };
-        assert_eq!(heavy(&["replay", "a"]), (None, 1));
-        assert_eq!(heavy(&["replay", "--heavy", "a", "b"]), (Some(97), 2));
-        assert_eq!(heavy(&["replay", "a", "--heavy=10"]), (Some(10), 1));
-    }
-
-    #[test]
-    fn numbers_that_are_none_are_refused() {
-        for (parser_says, ok) in [
-            (size("1280x720").is_ok(), true),
-            (size("0x720").is_ok(), false),
-            (size("1280").is_ok(), false),
-            (size("99999x2").is_ok(), false),
-            (julian_date("2461265.24").is_ok(), true),
-            (julian_date("NaN").is_ok(), false),
-            (julian_date("1e30").is_ok(), false),
-            (finite("inf").is_ok(), false),
-            (picture("a.PNG").is_ok(), true),
-            (picture("a.gif").is_ok(), false),
-        ] {
-            assert_eq!(parser_says, ok);
-        }
-    }
-}
+mod tests;

@@ -266,3 +266,71 @@ fn a_flight_is_recorded_saved_replayed_and_dumped() {
     assert_eq!(out.status.code(), Some(3), "{said}");
     assert!(said.contains("diverged at tick 120 in `time`"), "{said}");
 }
+
+/// A file of one case: two bodies, with what stands between the brackets of the second.
+fn case_file(dir: &Path, second: &str) {
+    let text = format!("{{\n \"bodies\": [\n  [\"Sun\", 1.0, 0, 0, 0, 0, 0, 0],\n  [{second}]\n ],\n \"T\": 6.283185307179586\n}}\n");
+    fs::write(dir.join("case.json"), text).unwrap();
+}
+
+#[test]
+fn a_case_of_motion_is_propagated_and_its_cost_told() {
+    let dir = tempfile::tempdir().unwrap();
+    case_file(dir.path(), "\"P\", 0, 1, 0, 0, 0, 1, 0");
+    for (method, setting) in
+        [("gauss_radau", "--tol=1e-9"), ("Dormand-Prince8", "--tol=1e-12"), ("kahan_li8_17", "--dt=0.05"), ("wisdom_holman", "--dt=1")]
+    {
+        let out = syzygy(dir.path(), &["probe", "propagate", "--case", "case.json", "--method", method, setting]);
+        let said = String::from_utf8_lossy(&out.stderr).into_owned();
+        assert!(out.status.success(), "{method}: {said}");
+        let answer: serde_json::Value = serde_json::from_slice(&out.stdout).unwrap();
+        // Once around a circle: back at the start.
+        let place = answer["final_states"][1]["position"].as_array().unwrap();
+        let miss = (place[0].as_f64().unwrap() - 1.0).abs() + place[1].as_f64().unwrap().abs();
+        assert!(miss < 1e-9 && answer["relative_energy_error"].as_f64().unwrap().abs() < 1e-9, "{method}: {answer}");
+        assert!(
+            answer["evaluations"].as_u64().unwrap() > 0
+                && answer["steps"].as_u64().unwrap() > 0
+                && answer["wall_s"].as_f64().unwrap() > 0.0
+        );
+    }
+}
+
+#[test]
+fn cases_and_methods_that_are_none_are_refused_by_name_and_place() {
+    const GOOD: fn(&Path) = |d| case_file(d, "\"P\", 0, 1, 0, 0, 0, 1, 0");
+    let propagate = |prepare: fn(&Path), more: &[&str], code: i32, words: &[&str]| {
+        expect(prepare, &[&["probe", "propagate", "--case", "case.json"], more].concat(), code, words);
+    };
+    propagate(GOOD, &["--method", "gaus_radau"], 1, &["no method `gaus_radau`", "did you mean `gauss_radau`"]);
+    propagate(GOOD, &["--method", "gauss_radau", "--tol=-1e-9"], 2, &["--tol", "above 0"]);
+    propagate(GOOD, &["--method", "gauss_radau", "--tol", "NaN"], 2, &["--tol", "above 0"]);
+    propagate(GOOD, &["--method", "gauss_radau", "--dt", "1"], 1, &["gauss_radau takes a tolerance"]);
+    propagate(GOOD, &["--method", "leapfrog"], 1, &["leapfrog takes a step", "--dt"]);
+    propagate(|_| {}, &["--method", "leapfrog", "--dt", "1"], 1, &["case.json", "cannot be read"]);
+    propagate(|d| case_file(d, "\"P\", 0, NaN, 0, 0, 0, 1, 0"), &["--method", "gauss_radau"], 1, &["case.json:4:", "expected a case"]);
+    propagate(|d| case_file(d, "\"P\", 0, 1e999, 0, 0, 0, 1, 0"), &["--method", "gauss_radau"], 1, &["case.json:4:", "out of range"]);
+    propagate(|d| case_file(d, "\"P\", 0, 1, 0"), &["--method", "gauss_radau"], 1, &["case.json:4:"]);
+    propagate(
+        |d| case_file(d, "\"P\", -1, 1, 0, 0, 0, 1, 0"),
+        &["--method", "gauss_radau"],
+        1,
+        &["case.json", "bodies[1] `P`", "gm is -1"],
+    );
+    propagate(
+        |d| case_file(d, "\"P\", 0, 0, 0, 0, 0, 1, 0"),
+        &["--method", "gauss_radau"],
+        1,
+        &["bodies[1] `P`", "same place as [0] `Sun`"],
+    );
+    propagate(|d| fs::write(d.join("case.json"), "{\"bodies\": [").unwrap(), &["--method", "gauss_radau"], 1, &["case.json:1:", "EOF"]);
+    propagate(|d| fs::write(d.join("case.json"), "{\"bodies\": []}").unwrap(), &["--method", "gauss_radau"], 1, &["bodies", "is empty"]);
+    expect(|_| {}, &["bench", "orbit", "--case", "LEO"], 1, &["no case `LEO`", "LEO_1000orb"]);
+    expect(|_| {}, &["bench", "orbit", "--method", "taylr"], 1, &["no method `taylr`", "did you mean `taylor`"]);
+    expect(
+        |d| fs::write(d.join("p.json"), "[{}]").unwrap(),
+        &["bench", "orbit", "--peers", "p.json", "--case", "FIG8_100T"],
+        1,
+        &["p.json:1:"],
+    );
+}

@@ -7,9 +7,10 @@ use super::fault::At;
 use super::reader::{ANY, POSITIVE, Reader};
 use super::relief::read_relief;
 use engine::orbit::State;
+use engine::orbit::eclipse::Shape;
 use engine::orbit::ephemeris::{MeanOrbit, Path};
 use engine::orbit::gravity::figure::Figure;
-use engine::orbit::rotation::{Spin, Term};
+use engine::orbit::rotation::{Model, Spin, Term};
 use engine::space::{Icrf, Position, Velocity};
 use engine::terrain::ReliefSpec;
 use engine::time::SimTime;
@@ -42,6 +43,8 @@ pub struct BodySpec {
     pub intensity_cd: Vec3,
     /// Pole and meridian.
     pub spin: Spin,
+    /// What throws and catches shadows.
+    pub shape: Shape,
     /// How its gravity differs from a point's, with its axes.
     pub figure: Option<Figure>,
     /// GM with all its moons, also those without a folder, m³/s².
@@ -75,6 +78,7 @@ pub fn read_body(key: &str, r: Reader<'_>) -> BodySpec {
         colour * engine::space::relative::narrow(lux * AU * AU)
     });
     let spin = r.table("rotation").map(read_spin).unwrap_or_default();
+    let shape = r.maybe_table("shape").map_or(Shape::sphere(radius_m), |t| read_shape(t, radius_m));
     let gravity = r.maybe_table("gravity").map(|t| read_gravity(t, &spin, gm_m3_s2));
     let path = r.table("orbit").map_or_else(nowhere, read_path);
     let air = r.maybe_table("air").map(|t| read_air(t, gm_m3_s2, radius_m));
@@ -93,6 +97,7 @@ pub fn read_body(key: &str, r: Reader<'_>) -> BodySpec {
         family_gm_m3_s2: gravity.as_ref().and_then(|g| g.1),
         figure: gravity.map(|g| g.0),
         spin,
+        shape,
         path,
         air,
         relief,
@@ -106,12 +111,35 @@ fn nowhere() -> Path {
     Path::FromParent { epoch: SimTime::default(), state: State::default() }
 }
 
+fn read_shape(r: Reader<'_>, radius_m: f64) -> Shape {
+    let radii = 0.1..=1e7;
+    let equatorial_m = r.maybe_number("equatorial_radius_km", radii.clone()).map_or(radius_m, |x| x * KM);
+    let limb_m = r.node.get("limb_radius_km").map_or([equatorial_m; 2], |_| r.numbers::<2>("limb_radius_km", radii).map(|x| x * KM));
+    let shape = Shape {
+        equatorial_m,
+        flattening: r.maybe_number("flattening", 0.0..=0.5).unwrap_or(0.0),
+        limb_m,
+        shadow: r.maybe_number("shadow_enlargement", 1.0..=1.1).unwrap_or(1.0),
+    };
+    r.finish();
+    shape
+}
+
 fn read_spin(r: Reader<'_>) -> Spin {
     let terms = |rows: Vec<[f64; 3]>| -> Vec<Term> {
         let term = |[a, p, w]: [f64; 3]| Term { amplitude_rad: a * DEG, phase_rad: p * DEG, rate_rad_per_century: w * DEG };
         rows.into_iter().map(term).collect()
     };
+    // The Earth's turning is observed: the model has its own numbers, and one left beside it would be read by nobody.
+    if r.maybe_text("model").is_some() {
+        let model = r.choice("model", &["iau", "earth"]);
+        if model == "earth" {
+            r.finish();
+            return Spin::earth();
+        }
+    }
     let spin = Spin {
+        model: Model::Iau,
         pole_ra_rad: [r.number("pole_ra_deg", TURN) * DEG, r.number("pole_ra_deg_per_century", TURN) * DEG],
         pole_dec_rad: [r.number("pole_dec_deg", -90.0..=90.0) * DEG, r.number("pole_dec_deg_per_century", TURN) * DEG],
         meridian_rad: [r.number("meridian_deg", TURN) * DEG, r.number("meridian_deg_per_day", -1e6..=1e6) * DEG],

@@ -21,7 +21,8 @@
 //! |---|---|
 //! | (top) | `name`, `parent` (key of the body it orbits; only the star has none), `gm_km3_s2`, `radius_km` (datum sphere: sea level), `albedo = [r, g, b]` (linear sRGB, 0 … 1) |
 //! | `[star]` | for the star only: `illuminance_at_1_au_lx` (Sun: 1.28e5), `colour = [r, g, b]` (linear sRGB, luminance 1) |
-//! | `[rotation]` | IAU form: `pole_ra_deg`, `pole_ra_deg_per_century`, `pole_dec_deg`, `pole_dec_deg_per_century`, `meridian_deg`, `meridian_deg_per_day`; *optional* `meridian_deg_per_century2` and lists of `[amplitude_deg, phase_deg, rate_deg_per_century]`: `pole_ra_terms` (sines), `pole_dec_terms` (cosines), `meridian_terms` (sines) |
+//! | `[rotation]` | *optional* `model`: `"earth"` (precession, nutation, observed UT1; takes no other key) or `"iau"` (the same as none). IAU form: `pole_ra_deg`, `pole_ra_deg_per_century`, `pole_dec_deg`, `pole_dec_deg_per_century`, `meridian_deg`, `meridian_deg_per_day`; *optional* `meridian_deg_per_century2` and lists of `[amplitude_deg, phase_deg, rate_deg_per_century]`: `pole_ra_terms` (sines), `pole_dec_terms` (cosines), `meridian_terms` (sines) |
+//! | `[shape]` | *optional*, for eclipses; all keys *optional*: `equatorial_radius_km` (else `radius_km`), `flattening` (0 … 0.5), `limb_radius_km = [outer, inner]` (of the limb at outer and inner contacts), `shadow_enlargement` (1 … 1.1: by air and oblateness, for eclipses of its moons) |
 //! | `[gravity]` | *optional*, what makes it more than a point: `reference_radius_km`, `j2`, `j3`, `j4` (unnormalised); *optional* `c22`, `tide_k2` and `tide_lag_s` (the bulge that others raise on it), `gm_with_moons_km3_s2` (with moons that have no folder) |
 //! | `[orbit]` | `kind`, `epoch_jd_tdb`, and by kind: |
 //! | … `"barycentric"` | state from the system's barycentre: `position_km`, `velocity_km_s`, `with_moons` (true: of the body with its moons) |

@@ -292,6 +292,7 @@ fn build(
         radius_m: s.radius_m,
         soi_radius_m,
         spin: s.spin.clone(),
+        shape: s.shape,
         figure: s.figure.clone(),
         albedo: s.albedo,
         intensity_cd: s.intensity_cd,

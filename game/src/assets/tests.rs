@@ -225,6 +225,10 @@ malformed! {
     two_stars: ROCK_FILE, "parent = \"sun\"\n" => "", line 1, ["only one body without"];
     no_star: SUN_FILE, "name = \"Sun\"" => "name = \"Sun\"\nparent = \"rock\"", line 2, ["circle"];
     star_without_light: SUN_FILE, "[star]\nilluminance_at_1_au_lx = 1.28e5\ncolour = [1.0, 1.0, 1.0]\n" => "", line 1, ["missing table [star]"];
+    unknown_rotation: ROCK_FILE, "[rotation]\n" => "[rotation]\nmodel = \"erth\"\n", line 7, ["one of \"iau\", \"earth\"", "did you mean `earth`?"];
+    the_earths_rotation_and_a_pole: ROCK_FILE, "[rotation]\n" => "[rotation]\nmodel = \"earth\"\n", line 8, ["unknown key `pole_ra_deg`"];
+    flat_as_a_coin: ROCK_FILE, "[rotation]\n" => "[shape]\nflattening = 0.7\n[rotation]\n", line 7, ["from 0 to 0.5"];
+    half_a_limb: ROCK_FILE, "[rotation]\n" => "[shape]\nlimb_radius_km = [6000.0]\n[rotation]\n", line 7, ["list of 2 numbers"];
     light_in_a_planet: ROCK_FILE, "[rotation]" => "[star]\nilluminance_at_1_au_lx = 1.0\ncolour = [1.0, 1.0, 1.0]\n[rotation]", line 6, ["only in the body without a `parent`"];
     key_given_twice: ROCK_FILE, "radius_km = 6000.0" => "radius_km = 6000.0\nradius_km = 6001.0", line 5, ["not TOML", "duplicate key"];
     broken_syntax: ROCK_FILE, "albedo = [0.3" => "albedo = 0.3", line 5, ["not TOML"];

@@ -5,9 +5,11 @@ use super::{Reply, Scene, ball, format, markers, style};
 use crate::command::{Action, Guidance, Hold, WARP_ONE, WARP_QUARTERS};
 use crate::input::climb;
 use crate::settings::Settings;
+use crate::world::eclipse::almanac;
 use crate::world::readout::{Readout, Situation, Warning};
 use egui::{Align2, Color32, Pos2, Rect, RichText, Sense, Ui, Vec2};
 use engine::space::relative::narrow;
+use engine::units::DAY;
 
 /// What the pilot chose to see.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -62,9 +64,23 @@ pub fn clock(ctx: &egui::Context, scene: &Scene<'_>, opacity: f32, reply: &mut R
                     let text = if hidden > 99.95 { format!("Sun hidden{by}") } else { format!("Sun {hidden:.0} % hidden{by}") };
                     ui.label(RichText::new(text).font(style::words(13.0)).color(style::ACCENT));
                 }
+                if let Some(text) = eclipse(scene) {
+                    ui.label(RichText::new(text).font(style::words(12.5)).color(style::ACCENT));
+                }
             });
         });
     });
+}
+
+/// `Total eclipse: Moon before Sun, 3:12 to greatest`: the event in force or to come within a day.
+fn eclipse(scene: &Scene<'_>) -> Option<String> {
+    let e = scene.readout.eclipse.filter(|e| e.to_first_s < DAY)?;
+    let title = almanac::title(&scene.world.system, &e.event);
+    let when = match e.to_greatest_s {
+        s if s > 0.0 => format!("{} to greatest", format::duration(s)),
+        _ => format!("ends in {}", format::duration(e.to_last_s)),
+    };
+    Some(format!("{title}, {when}"))
 }
 
 const fn situation(s: Situation) -> &'static str {

@@ -18,6 +18,12 @@ impl Hud {
     pub fn back(&self) -> Screen {
         if self.menu.flying { Screen::Pause } else { Screen::Main }
     }
+
+    /// Opens the calendar of eclipses, anew from the present.
+    fn open_calendar(&mut self) {
+        self.calendar = super::calendar::State::default();
+        self.screen = Screen::Calendar;
+    }
 }
 
 fn backdrop(ctx: &egui::Context, alpha: u8) {
@@ -30,9 +36,18 @@ fn choice(ui: &mut Ui, text: &str, enabled: bool) -> bool {
     ui.add_enabled(enabled, egui::Button::new(label).min_size(Vec2::new(260.0, 38.0))).clicked()
 }
 
+/// What goes on beside the menu.
+fn beside(ctx: &egui::Context, hud: &Hud) {
+    if let Some(part) = hud.paths_ahead {
+        let text = format!("Working out the paths of the bodies from 1900 to 2100: {:.0} %", part * 100.0);
+        area(ctx, "beside", Align2::LEFT_BOTTOM, [14.0, -10.0], |ui| ui.label(style::note(text)));
+    }
+}
+
 /// The main menu.
 pub fn main(ctx: &egui::Context, hud: &mut Hud, lists: &Lists, reply: &mut Reply) {
     backdrop(ctx, 70);
+    beside(ctx, hud);
     hud.menu.flying = false;
     area(ctx, "main", Align2::LEFT_CENTER, [72.0, 0.0], |ui| {
         ui.label(RichText::new("SYZYGY").font(style::words(58.0)).color(style::TEXT));
@@ -44,6 +59,9 @@ pub fn main(ctx: &egui::Context, hud: &mut Hud, lists: &Lists, reply: &mut Reply
             }
             if choice(ui, "New flight", true) {
                 hud.screen = Screen::Starts;
+            }
+            if choice(ui, "Eclipses", true) {
+                hud.open_calendar();
             }
             if choice(ui, "Load", !lists.saves.is_empty()) {
                 hud.screen = Screen::Saves;
@@ -129,6 +147,7 @@ pub fn saves(ctx: &egui::Context, hud: &mut Hud, lists: &Lists, reply: &mut Repl
 /// The pause menu.
 pub fn pause(ctx: &egui::Context, hud: &mut Hud, reply: &mut Reply) {
     backdrop(ctx, 120);
+    beside(ctx, hud);
     hud.menu.flying = true;
     area(ctx, "pause", Align2::CENTER_CENTER, [0.0, 0.0], |ui| {
         style::panel(0.9).inner_margin(22).show(ui, |ui| {
@@ -152,6 +171,9 @@ pub fn pause(ctx: &egui::Context, hud: &mut Hud, reply: &mut Reply) {
             }
             if choice(ui, "New flight", true) {
                 hud.screen = Screen::Starts;
+            }
+            if choice(ui, "Eclipses", true) {
+                hud.open_calendar();
             }
             if choice(ui, "Photo mode", true) {
                 hud.photo.enter();

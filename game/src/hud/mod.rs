@@ -6,6 +6,7 @@
 //! themselves ([`crate::input`]).
 
 pub mod ball;
+pub mod calendar;
 pub mod conic;
 pub mod controls;
 pub mod crash;
@@ -29,9 +30,12 @@ use crate::command::Action;
 use crate::input::Input;
 use crate::settings::Settings;
 use crate::world::World;
+use crate::world::eclipse::almanac::Event;
+use crate::world::eclipse::visit::Seat;
 use crate::world::readout::Readout;
 use engine::orbit::BodyId;
 use engine::scene::Snapshot;
+use engine::time::SimTime;
 use std::path::PathBuf;
 
 /// Which screen is shown.
@@ -44,6 +48,8 @@ pub enum Screen {
     Starts,
     /// Choosing a save.
     Saves,
+    /// The calendar of eclipses.
+    Calendar,
     /// Settings.
     Options,
     /// Flying.
@@ -72,6 +78,10 @@ impl Screen {
 pub enum Request {
     /// Begin a new flight at this start.
     NewFlight(String),
+    /// Look for the eclipses on a body from a time on.
+    Eclipses(BodyId, SimTime),
+    /// Begin a new flight at the place and minute of an eclipse.
+    Visit(Event, Seat),
     /// Load this save.
     Load(PathBuf),
     /// Load the newest save.
@@ -180,10 +190,14 @@ pub struct Hud {
     pub crash: crash::Review,
     /// Settings screen.
     pub options: options::State,
+    /// Calendar of eclipses.
+    pub calendar: calendar::State,
     /// Menus.
     pub menu: menu::State,
     /// Small notices, each with the seconds that it still stays.
     pub notices: Vec<(String, f32)>,
+    /// How much of the bodies' paths has been worked out, 0 … 1, while that goes on.
+    pub paths_ahead: Option<f32>,
     /// What is wrong with changed files, shown until they are mended.
     pub fault: Option<String>,
     /// A message that waits for a click.
@@ -232,6 +246,7 @@ impl Hud {
                 surface::show(ctx, scene, &mut self.surface, opacity, &mut reply);
                 flight::clock(ctx, scene, opacity, &mut reply);
             }
+            (Screen::Calendar, Some(scene)) => calendar::show(ctx, scene, self, &mut reply),
             (Screen::Photo, Some(scene)) => photo::show(ctx, scene, &mut self.photo, &mut reply),
             (Screen::Crash, Some(scene)) => crash::show(ctx, scene, self, &mut reply),
         }
@@ -300,6 +315,7 @@ mod tests {
         let screens = [
             Screen::Main,
             Screen::Starts,
+            Screen::Calendar,
             Screen::Saves,
             Screen::Options,
             Screen::Flight,

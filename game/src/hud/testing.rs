@@ -62,6 +62,7 @@ pub fn readout() -> Readout {
         node: None,
         sun_visible: 1.0,
         eclipsed_by: None,
+        eclipse: None,
         warnings: Vec::new(),
         last_contact: None,
     }

@@ -2,6 +2,7 @@
 //!
 //! Not here: the words themselves ([`crate::cli`]), the loop that modes share ([`crate::session`]).
 
+pub mod bench;
 pub mod check_assets;
 pub mod headless;
 pub mod open;
@@ -13,7 +14,7 @@ pub mod stage;
 pub mod studio;
 pub mod window;
 
-use crate::cli::{Cli, HeadlessArgs, Mode, Places, Probe, ShotArgs};
+use crate::cli::{Bench, Cli, HeadlessArgs, Mode, Places, Probe, ShotArgs};
 use crate::command::Commands;
 use crate::replay::{Log, LogError, Player, Recorder};
 use crate::save::{self, Slots};
@@ -53,6 +54,22 @@ pub enum Error {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Height(#[from] probe::height::HeightError),
+    /// No two-body states.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Kepler(#[from] probe::kepler::KeplerError),
+    /// No case of orbital motion.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Case(#[from] bench::orbit_case::CaseError),
+    /// No integrator, or a setting that it does not take.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Method(#[from] bench::orbit_method::MethodError),
+    /// A bench's rows or pictures.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Rows(#[from] bench::orbit_rows::RowsError),
     /// A body that the system does not have.
     #[error("there is no body `{body}`")]
     #[diagnostic(help("{help}"))]
@@ -93,6 +110,7 @@ pub fn run(cli: Cli) -> ExitCode {
             ExitCode::SUCCESS
         }),
         Mode::Probe(probe) => probe::run(probe).map(|()| ExitCode::SUCCESS),
+        Mode::Bench(bench) => bench::run(bench).map(|()| ExitCode::SUCCESS),
     };
     outcome.unwrap_or_else(|error| {
         let code = error.exit_code();
@@ -159,7 +177,12 @@ fn places_of(mode: &Mode) -> &Places {
         Mode::CheckAssets(a) => &a.places,
         Mode::Probe(Probe::Air(a)) => &a.common.places,
         Mode::Probe(Probe::Height(a)) => &a.common.places,
+        Mode::Probe(Probe::Kepler(a)) => &a.places,
         Mode::Probe(Probe::Ephemeris(a)) => &a.common.places,
+        Mode::Probe(Probe::Eclipses(a)) => &a.common.places,
+        Mode::Probe(Probe::Propagate(a)) => &a.common.places,
+        Mode::Bench(Bench::Orbit(a)) => &a.places,
+        Mode::Bench(Bench::Ships(a)) => &a.places,
     }
 }
 

@@ -71,6 +71,15 @@ pub fn data_dir(places: &Places) -> PathBuf {
         .unwrap_or_else(|| PathBuf::from("saves"))
 }
 
+/// The folder for what can be made again: beside the saves where their folder was named, else the user's cache folder.
+pub fn cache_dir(places: &Places) -> Option<PathBuf> {
+    let named = places.data_dir.is_some() || std::env::var_os("SYZYGY_DATA_DIR").is_some_and(|v| !v.is_empty());
+    if named {
+        return Some(data_dir(places).join("cache"));
+    }
+    directories::ProjectDirs::from("", "", "syzygy").map(|d| d.cache_dir().to_owned())
+}
+
 /// The checkout that this program was built in, where it still stands.
 fn checkout() -> Option<PathBuf> {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().filter(|root| root.join("game/Cargo.toml").is_file()).map(Path::to_owned)
@@ -88,6 +97,12 @@ mod tests {
         assert!(e.contains(&dir.path().display().to_string()) && e.contains("systems"), "{e}");
         std::fs::create_dir(dir.path().join("systems")).unwrap();
         assert_eq!(assets(&places).unwrap(), dir.path());
+    }
+
+    #[test]
+    fn a_named_folder_of_saves_holds_the_cache_too() {
+        let places = Places { data_dir: Some("here".into()), ..Places::default() };
+        assert_eq!(cache_dir(&places).unwrap(), Path::new("here").join("cache"));
     }
 
     #[test]

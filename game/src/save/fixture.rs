@@ -25,6 +25,7 @@ fn body(key: &str, parent: Option<BodyId>, gm_m3_s2: f64, radius_m: f64) -> Body
         radius_m,
         soi_radius_m: if parent.is_some() { 9.0e8 } else { f64::INFINITY },
         spin: engine::orbit::rotation::Spin { pole_dec_rad: [1.4, 0.0], meridian_rad: [0.3, 6.3], ..Default::default() },
+        shape: engine::orbit::eclipse::Shape::sphere(radius_m),
         figure: None,
         albedo: Vec3::splat(0.3),
         intensity_cd: Vec3::ZERO,

@@ -134,6 +134,7 @@ pub(crate) mod tests {
             node: None,
             sun_visible: 1.0,
             eclipsed_by: None,
+            eclipse: None,
             warnings: Vec::new(),
             last_contact: None,
         }

@@ -14,7 +14,10 @@ impl World {
             Motion::Fly(rigid) | Motion::Contact(rigid) => Knot::new(rigid.body, self.time, &rigid.state),
             Motion::Landed(_) | Motion::Crashed(_) => return None,
         };
-        let mut ahead = predict(&self.system.gravity, &self.system.ephemeris, knot, burns, limits);
+        // The step may have begun before a burn whose moment has passed: nothing is burnt for that any more.
+        let ahead_of_now = |b: &Burn| if b.at.since(self.time.into()) < 0.0 { Burn { at: b.at, ..Burn::default() } } else { *b };
+        let burns: Vec<Burn> = burns.iter().map(ahead_of_now).collect();
+        let mut ahead = predict(&self.system.gravity, &self.system.ephemeris, knot, &burns, limits);
         ahead.marks.retain(|m| m.at.since(self.time.into()) >= 0.0);
         Some(ahead)
     }

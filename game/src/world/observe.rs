@@ -2,7 +2,7 @@
 
 use super::World;
 use super::eclipse::{self, Sky};
-use super::readout::{Markers, NodeReadout, OrbitReadout, Readout, Situation, TargetReadout, Warning};
+use super::readout::{EclipseReadout, Markers, NodeReadout, OrbitReadout, Readout, Situation, TargetReadout, Warning};
 use super::ship::local::{Local, ground_m};
 use super::ship::{Motion, Rigid, aero, attitude, warp};
 use crate::command::{Guidance, Target};
@@ -78,6 +78,7 @@ impl World {
             node: self.node_readout(),
             sun_visible,
             eclipsed_by,
+            eclipse: self.eclipse(rigid.body),
             warnings: Vec::new(),
             last_contact: ship.last_contact.map(|(speed, at)| (speed, self.time.ticks - at.ticks)),
         };
@@ -162,6 +163,13 @@ impl World {
             }
         }
         (visible, worst.1)
+    }
+
+    fn eclipse(&self, body: BodyId) -> Option<EclipseReadout> {
+        let event = self.system.next_event(body, self.time)?;
+        let until = |t: engine::time::Moment| t.since(self.time.into());
+        let [first, last] = event.eclipse.penumbra;
+        Some(EclipseReadout { event, to_first_s: until(first), to_greatest_s: until(event.eclipse.greatest), to_last_s: until(last) })
     }
 
     fn warnings(&self, r: &Readout) -> Vec<Warning> {

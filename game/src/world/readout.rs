@@ -2,6 +2,7 @@
 //!
 //! What is told is here; how it is found is in [`super::observe`].
 
+use super::eclipse::almanac::Event;
 use crate::command::{Guidance, Hold, Target};
 use engine::orbit::BodyId;
 use engine::time::SimTime;
@@ -98,6 +99,19 @@ pub struct TargetReadout {
     pub ground_distance_m: Option<f64>,
 }
 
+/// The eclipse in force or next to come on the dominating body, within some days.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EclipseReadout {
+    /// Whose shadow falls on whom, and how.
+    pub event: Event,
+    /// Seconds until the penumbra first touches the body (negative: it does).
+    pub to_first_s: f64,
+    /// Seconds until it is greatest.
+    pub to_greatest_s: f64,
+    /// Seconds until the penumbra leaves.
+    pub to_last_s: f64,
+}
+
 /// The next planned burn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NodeReadout {
@@ -188,6 +202,8 @@ pub struct Readout {
     pub sun_visible: f64,
     /// The body that hides the sun, if one does.
     pub eclipsed_by: Option<BodyId>,
+    /// The eclipse in force or next to come here.
+    pub eclipse: Option<EclipseReadout>,
     /// Warnings in force, worst first.
     pub warnings: Vec<Warning>,
     /// Speed of the last touchdown or impact along the ground's normal, m/s, and ticks since; none before the first.

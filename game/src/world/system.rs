@@ -1,9 +1,11 @@
 //! The system: which bodies exist, how big they are, how they turn, what covers them. Built from validated assets.
 
+use super::eclipse::almanac::Almanac;
 use super::ship::local::air_top_m;
 use super::ship::warp::floor_m;
 use engine::air::Medium;
 use engine::air::density::Column;
+use engine::orbit::eclipse::Shape;
 use engine::orbit::ephemeris::Ephemeris;
 use engine::orbit::field::{Bound, Source};
 use engine::orbit::gravity::figure::Figure;
@@ -42,6 +44,8 @@ pub struct Body {
     pub soi_radius_m: f64,
     /// Pole and prime meridian.
     pub spin: Spin,
+    /// Its shape where shadows are counted (the ground and the picture use the datum sphere).
+    pub shape: Shape,
     /// How its gravity differs from a point's; ships feel its zonal terms.
     pub figure: Option<Figure>,
     /// Mean surface albedo, linear sRGB.
@@ -71,6 +75,8 @@ pub struct System {
     pub gravity: Model,
     /// blake3 of the asset files that the World depends on, hex; a replay refuses others.
     pub hash: String,
+    /// What is known of its eclipses so far.
+    pub eclipses: Almanac,
 }
 
 impl System {
@@ -90,7 +96,7 @@ impl System {
             }
         };
         let gravity = Model::new(bodies.iter().enumerate().map(as_met).collect(), Bound::COAST);
-        Self { key, name, bodies, ephemeris, gravity, hash }
+        Self { key, name, bodies, ephemeris, gravity, hash, eclipses: Almanac::default() }
     }
     /// The body behind a handle.
     pub fn body(&self, id: BodyId) -> &Body {

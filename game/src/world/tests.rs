@@ -36,6 +36,7 @@ fn rock(gm: f64, radius_m: f64, spin: Spin, air: Option<Air>) -> Body {
         radius_m,
         soi_radius_m: f64::INFINITY,
         spin,
+        shape: engine::orbit::eclipse::Shape::sphere(radius_m),
         figure: None,
         albedo: Vec3::splat(0.1),
         intensity_cd: Vec3::ZERO,

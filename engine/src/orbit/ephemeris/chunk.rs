@@ -53,32 +53,46 @@ impl Chunk {
     }
 
     /// Position and its rate for x, at `x` = 0 … 1 of the chunk. The origin where there is no such track.
+    ///
+    /// Even and odd terms are two series in w = 2u² − 1, T₂ₖ(u) = Tₖ(w) and T₂ₖ₊₃ = 2w T₂ₖ₊₁ − T₂ₖ₋₁, so that two recurrences of
+    /// half the length [Clenshaw 1955] run side by side.
     pub fn at(&self, track: usize, x: f64) -> (DVec3, DVec3) {
         let Some(s) = self.segment(track, x) else { return (DVec3::ZERO, DVec3::ZERO) };
-        // Clenshaw's recurrence and its derivative.
-        let two_u = 2.0 * s.u;
-        let (mut b1, mut b2, mut d1, mut d2) = (DVec3::ZERO, DVec3::ZERO, DVec3::ZERO, DVec3::ZERO);
+        let w = 2.0 * s.u * s.u - 1.0;
+        let two_w = 2.0 * w;
+        // Values (b) and their slopes in w (d) of both series; the even one stops before T₀.
+        let (mut even, mut odd) = ([DVec3::ZERO; 2], [DVec3::ZERO; 2]);
+        let (mut even_d, mut odd_d) = ([DVec3::ZERO; 2], [DVec3::ZERO; 2]);
         let Some((c0, rest)) = s.terms.split_first() else { return (DVec3::ZERO, DVec3::ZERO) };
-        for c in rest.iter().rev() {
-            let d = b1 * 2.0 + d1 * two_u - d2;
-            (d2, d1) = (d1, d);
-            let b = *c + b1 * two_u - b2;
-            (b2, b1) = (b1, b);
+        let pairs = rest.chunks_exact(2);
+        // A last odd term without an even one after it.
+        odd[0] = pairs.remainder().first().copied().unwrap_or(DVec3::ZERO);
+        for pair in pairs.rev() {
+            even_d = [even[0] * 2.0 + even_d[0] * two_w - even_d[1], even_d[0]];
+            even = [pair[1] + even[0] * two_w - even[1], even[0]];
+            odd_d = [odd[0] * 2.0 + odd_d[0] * two_w - odd_d[1], odd_d[0]];
+            odd = [pair[0] + odd[0] * two_w - odd[1], odd[0]];
         }
-        (*c0 + b1 * s.u - b2, (b1 + d1 * s.u - d2) * (1.0 / s.half))
+        let (line, line_d) = (odd[0] - odd[1], odd_d[0] - odd_d[1]);
+        let position = *c0 + even[0] * w - even[1] + line * s.u;
+        let slope_w = even[0] + even_d[0] * w - even_d[1] + line_d * s.u;
+        (position, (slope_w * (4.0 * s.u) + line) * (1.0 / s.half))
     }
 
     /// Position alone.
     pub fn position(&self, track: usize, x: f64) -> DVec3 {
         let Some(s) = self.segment(track, x) else { return DVec3::ZERO };
+        let w = 2.0 * s.u * s.u - 1.0;
+        let two_w = 2.0 * w;
+        let (mut even, mut odd) = ([DVec3::ZERO; 2], [DVec3::ZERO; 2]);
         let Some((c0, rest)) = s.terms.split_first() else { return DVec3::ZERO };
-        let two_u = 2.0 * s.u;
-        let (mut b1, mut b2) = (DVec3::ZERO, DVec3::ZERO);
-        for c in rest.iter().rev() {
-            let b = *c + b1 * two_u - b2;
-            (b2, b1) = (b1, b);
+        let pairs = rest.chunks_exact(2);
+        odd[0] = pairs.remainder().first().copied().unwrap_or(DVec3::ZERO);
+        for pair in pairs.rev() {
+            even = [pair[1] + even[0] * two_w - even[1], even[0]];
+            odd = [pair[0] + odd[0] * two_w - odd[1], odd[0]];
         }
-        *c0 + b1 * s.u - b2
+        *c0 + even[0] * w - even[1] + (odd[0] - odd[1]) * s.u
     }
 
     /// Adds `weight` × the Taylor coefficients in x of the track about `x` to `out`; returns how far in x the same segment goes on

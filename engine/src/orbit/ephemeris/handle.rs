@@ -5,7 +5,7 @@ use super::level::{Checkpoint, Heard, Kind, Level, Plan};
 use super::mean;
 use super::orbit::{Details, EphemerisError, Orbit, check};
 use super::planets::Planets;
-use super::tree::{Pair, Tree};
+use super::tree::{Pair, Tree, add};
 use crate::orbit::elements::Elements;
 use crate::orbit::field::Reach;
 use crate::orbit::kepler::Conic;
@@ -18,14 +18,14 @@ use std::sync::Arc;
 
 /// How far from the epoch a system is integrated where somebody asks, s.
 const REACH_S: f64 = 4.0 * JULIAN_CENTURY;
-/// A fit may be off by this part of the size of an orbit …
-const FIT: f64 = 1e-13;
+/// A fit may be off by this part of the size of an orbit (of a light moon's: the second) …
+const FIT: [f64; 2] = [1e-13, 1e-11];
 /// … and by this part of the distance from the barycentre, which is a few times what an f64 of it can tell.
 const FLOOR: f64 = 1e-15;
 /// Shortest revolutions that a chunk of light moons spans.
 const REVOLUTIONS: f64 = 32.0;
 /// Tides by other bodies on light moons count above this part of the planet's pull.
-const TIDE_COUNTS: f64 = 1e-11;
+const TIDE_COUNTS: f64 = 1e-10;
 
 /// Where every body of a system is, at any time. A handle: cheap to clone, shared between threads.
 #[derive(Clone, Debug, Default)]
@@ -75,7 +75,7 @@ impl System {
         }
         let conics = (0..n).map(|i| mean::conic(tree.family_gm[i] + tree.parent[i].map_or(0.0, |p| tree.gm[p]), tree.start[i])).collect();
         let reach = (0..n).map(|i| reach_of(&tree, i)).collect();
-        let mut system = Self { place: vec![(0, 0); n], conics, whole, reach, levels: Vec::new(), key, tree };
+        let mut system = Self { place: vec![(0, 0); 2 * n], conics, whole, reach, levels: Vec::new(), key, tree };
         system.levels.push(system.planetary(details));
         for i in 0..n {
             if let Some(level) = system.light(details, i) {
@@ -86,6 +86,10 @@ impl System {
             for (k, body) in level.bodies.iter().enumerate() {
                 system.place[*body] = (l, k);
             }
+        }
+        // Tracks of one level side by side: their chunk is looked up once.
+        for list in &mut system.whole {
+            list.sort_by_key(|(track, _)| system.place[*track]);
         }
         Ok(system)
     }
@@ -139,7 +143,7 @@ impl System {
                 } else {
                     size(list)
                 };
-                FIT * if size.is_finite() { size } else { 1.0 } + FLOOR * q.length() + f64::MIN_POSITIVE
+                FIT[0] * if size.is_finite() { size } else { 1.0 } + FLOOR * q.length() + f64::MIN_POSITIVE
             })
             .collect();
         let (ticks, reach, halvings) = self.grid(&bodies, 1.0);
@@ -163,8 +167,8 @@ impl System {
     fn point(&self, body: usize) -> Vec<(usize, f64)> {
         let mut list = self.whole[body].clone();
         // `whole` is the body's centre: the light moons' part is added again.
-        for &c in self.tree.children[body].iter().filter(|c| !self.tree.planetary[**c]) {
-            merge(&mut list, &[(c, self.tree.family_gm[c] / self.tree.point_gm[body])], 1.0);
+        if self.tree.has_light(body) {
+            merge(&mut list, &[(self.tree.aside(body), 1.0)], 1.0);
         }
         list
     }
@@ -190,10 +194,7 @@ impl System {
             all.push((t.family_gm[s], vec![(s, 1.0), (body, -1.0)]));
         }
         for (gm, mut list) in self.others(p) {
-            for &c in t.children[p].iter().filter(|c| !t.planetary[**c]) {
-                merge(&mut list, &[(c, t.family_gm[c] / t.point_gm[p])], 1.0);
-            }
-            merge(&mut list, &[(body, 1.0)], -1.0);
+            merge(&mut list, &[(t.aside(p), 1.0), (body, -1.0)], 1.0);
             all.push((gm, list));
         }
         all
@@ -231,14 +232,18 @@ impl System {
             others_gm,
             heard,
             others,
+            shares: bodies.iter().map(|b| self.tree.share(*b)).collect(),
         };
-        let within_m = start.q.iter().map(|q| FIT * q.length() + f64::MIN_POSITIVE).collect();
+        let mut within_m: Vec<f64> = start.q.iter().map(|q| FIT[1] * q.length() + f64::MIN_POSITIVE).collect();
+        within_m.push(within_m.iter().zip(&bodies).map(|(w, b)| w * self.tree.share(*b)).sum::<f64>() + f64::MIN_POSITIVE);
+        let mut bodies = bodies;
+        bodies.push(self.tree.aside(body));
         Some(Level::new(Plan { bodies, ticks, reach, kind, epoch: self.tree.epoch, start, within_m, halvings }))
     }
 
     /// Places of all tracks at the epoch.
     fn start_places(&self) -> Vec<DVec3> {
-        let mut places = vec![DVec3::ZERO; self.tree.gm.len()];
+        let mut places = vec![DVec3::ZERO; 2 * self.tree.gm.len()];
         let level = &self.levels[0];
         let start = level.start();
         for (body, track) in level.bodies.iter().zip(level.tracks_of(&start.q)) {
@@ -248,6 +253,7 @@ impl System {
             let (moons, starts) = self.tree.light_starts(i);
             for (moon, s) in moons.iter().zip(starts) {
                 places[*moon] = s.0;
+                places[self.tree.aside(i)] += s.0 * self.tree.share(*moon);
             }
         }
         places
@@ -268,6 +274,11 @@ impl System {
 
     /// Beyond reach: on the conic of the start, about a root that moves on uniformly.
     fn conic(&self, body: usize, t: f64) -> Pair {
+        if body >= self.tree.gm.len() {
+            let of = body - self.tree.gm.len();
+            let light = self.tree.children[of].iter().filter(|c| !self.tree.planetary[**c]);
+            return light.fold((DVec3::ZERO, DVec3::ZERO), |sum, c| add(sum, self.conic(*c, t), self.tree.share(*c)));
+        }
         let root = (self.tree.start[0].0 + self.tree.start[0].1 * t, self.tree.start[0].1);
         match self.tree.parent[body] {
             None => root,
@@ -279,11 +290,21 @@ impl System {
         }
     }
 
+    /// Sum of weighted tracks; those of one level that stand side by side share one look at its chunk.
     fn sum(&self, list: &[(usize, f64)], ticks: i64, beyond_s: f64) -> Pair {
-        list.iter().fold((DVec3::ZERO, DVec3::ZERO), |sum, (track, weight)| {
-            let (r, v) = self.track(*track, ticks, beyond_s);
-            (sum.0 + r * *weight, sum.1 + v * *weight)
-        })
+        let mut sum = (DVec3::ZERO, DVec3::ZERO);
+        for group in list.chunk_by(|a, b| self.place[a.0].0 == self.place[b.0].0) {
+            let level = &self.levels[self.place[group[0].0].0];
+            let Some((n, x)) = level.locate(ticks, beyond_s) else {
+                sum = group.iter().fold(sum, |sum, (track, weight)| add(sum, self.track(*track, ticks, beyond_s), *weight));
+                continue;
+            };
+            let (r, v) = level.view(self, n, |chunk| {
+                group.iter().fold((DVec3::ZERO, DVec3::ZERO), |sum, (track, weight)| add(sum, chunk.at(self.place[*track].1, x), *weight))
+            });
+            sum = (sum.0 + r, sum.1 + v * (1.0 / level.chunk_s()));
+        }
+        sum
     }
 
     /// Tracks and weights of `a` from `b`, summed only as far up as their common ancestor.
@@ -403,7 +424,9 @@ impl Ephemeris {
         out.clear();
         let Some(s) = &self.system else { return };
         let ticks = t.ticks.saturating_sub(s.tree.epoch.ticks);
-        let tracks: Vec<Pair> = (0..s.tree.gm.len()).map(|i| s.track(i, ticks, 0.0)).collect();
+        let known = |i: usize| i < s.tree.gm.len() || s.tree.has_light(i - s.tree.gm.len());
+        let zero = (DVec3::ZERO, DVec3::ZERO);
+        let tracks: Vec<Pair> = (0..2 * s.tree.gm.len()).map(|i| if known(i) { s.track(i, ticks, 0.0) } else { zero }).collect();
         out.extend(s.whole.iter().map(|list| {
             let sum = list.iter().fold((DVec3::ZERO, DVec3::ZERO), |sum, (k, w)| (sum.0 + tracks[*k].0 * *w, sum.1 + tracks[*k].1 * *w));
             wrap(sum)

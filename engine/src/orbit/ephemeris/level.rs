@@ -6,18 +6,20 @@
 //! chunks made from them on demand.
 
 use super::chunk::{Chunk, Fitter};
-use super::moons::{Moons, Others};
+use super::moons::{Moons, Pole};
 use super::planets::Planets;
 use crate::orbit::gravity::figure::Figure;
 use crate::orbit::integrate::gauss_radau::GaussRadau;
 use crate::orbit::integrate::{Force, Points, Step};
 use crate::time::{SimTime, TICKS_PER_SECOND};
-use core::cell::RefCell;
 use glam::DVec3;
 use std::sync::{Mutex, OnceLock, PoisonError, RwLock};
 
 /// Chunks that a level of moons keeps.
 const SLOTS: usize = 64;
+
+/// Tolerance for light moons: ten times that of the planets takes 4/5 of the time and moves Phobos by centimetres in ten years.
+const MOONS: f64 = 1e-8;
 
 /// Where a level stands at the border of a chunk.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -52,6 +54,8 @@ pub enum Kind {
         heard: Vec<usize>,
         /// For each of the others: places in `heard`, and weights.
         others: Vec<Vec<(usize, f64)>>,
+        /// Weight of each moon in the track that comes after theirs: what they draw the body aside.
+        shares: Vec<f64>,
     },
 }
 
@@ -61,11 +65,11 @@ pub trait Heard: Sync {
     fn track(&self, body: usize, t: f64) -> DVec3;
 }
 
-/// One of the two directions of time.
+/// One of the two directions of time, forward and backward.
 #[derive(Debug, Default)]
-pub struct Side {
+struct Side {
     /// The k-th is where the k-th chunk outwards begins.
-    pub checkpoints: RwLock<Vec<Checkpoint>>,
+    checkpoints: RwLock<Vec<Checkpoint>>,
     growing: Mutex<()>,
 }
 
@@ -80,8 +84,7 @@ pub struct Level {
     pub ticks: i64,
     /// Chunks on each side of the epoch.
     pub reach: i64,
-    /// Forward and backward.
-    pub sides: [Side; 2],
+    sides: [Side; 2],
     kind: Kind,
     epoch: SimTime,
     within_m: Vec<f64>,
@@ -109,24 +112,6 @@ pub struct Plan {
     pub within_m: Vec<f64>,
     /// Halvings of a chunk that the fastest track is expected to need.
     pub halvings: u32,
-}
-
-struct Upper<'a, H: ?Sized> {
-    heard: &'a H,
-    tracks: &'a [usize],
-    others: &'a [Vec<(usize, f64)>],
-    places: RefCell<Vec<DVec3>>,
-}
-
-impl<H: Heard + ?Sized> Others for Upper<'_, H> {
-    fn places(&self, t: f64, out: &mut [DVec3]) {
-        let mut places = self.places.borrow_mut();
-        places.clear();
-        places.extend(self.tracks.iter().map(|b| self.heard.track(*b, t)));
-        for (out, list) in out.iter_mut().zip(self.others) {
-            *out = list.iter().fold(DVec3::ZERO, |sum, (k, w)| sum + places[*k] * *w);
-        }
-    }
 }
 
 /// A step that was made, for sampling: what it spans and the integrator after it.
@@ -183,8 +168,24 @@ impl Level {
         self.slot_of(n).and_then(OnceLock::get)
     }
 
-    /// Takes a chunk that a cache held.
-    pub fn keep(&self, n: i64, chunk: Chunk) {
+    /// Checkpoints of a side, the epoch's among them.
+    pub fn grown(&self, side: usize) -> usize {
+        self.sides[side].checkpoints.read().unwrap_or_else(PoisonError::into_inner).len()
+    }
+
+    /// Takes over what a cache held of a side: checkpoints from the epoch outwards, and the chunks between them where they are kept.
+    pub fn adopt(&self, side: usize, checkpoints: Vec<Checkpoint>, chunks: Vec<Chunk>) {
+        let _growing = self.sides[side].growing.lock().unwrap_or_else(PoisonError::into_inner);
+        if checkpoints.len() <= self.grown(side) {
+            return;
+        }
+        for (k, chunk) in (0_i64..).zip(chunks) {
+            self.keep(if side == 0 { k } else { -1 - k }, chunk);
+        }
+        *self.sides[side].checkpoints.write().unwrap_or_else(PoisonError::into_inner) = checkpoints;
+    }
+
+    fn keep(&self, n: i64, chunk: Chunk) {
         if let Some(slot) = self.slot_of(n) {
             // One that is there already has the same bits.
             let _ = slot.set(chunk);
@@ -195,7 +196,7 @@ impl Level {
     pub fn view<R>(&self, heard: &dyn Heard, n: i64, look: impl FnOnce(&Chunk) -> R) -> R {
         if self.keeps() {
             if self.kept(n).is_none() {
-                self.grow(heard, n, usize::MAX);
+                self.grow(heard, n);
             }
             return match self.kept(n) {
                 Some(chunk) => look(chunk),
@@ -209,7 +210,7 @@ impl Level {
                 return look(chunk);
             }
         }
-        self.grow(heard, n, usize::MAX);
+        self.grow(heard, n);
         let chunk = self.make(heard, n);
         let mut seen = slot.write().unwrap_or_else(PoisonError::into_inner);
         look(&seen.insert((n, chunk)).1)
@@ -221,19 +222,19 @@ impl Level {
         if n >= 0 { (0, n as usize) } else { (1, (-1 - n) as usize) }
     }
 
-    /// Integrates outwards until chunk `n` can be made (a kept one: is there), `at_most` chunks; true when that is so.
-    pub fn grow(&self, heard: &dyn Heard, n: i64, at_most: usize) -> bool {
+    /// Integrates outwards until chunk `n` can be made (a kept one: is there).
+    pub fn grow(&self, heard: &dyn Heard, n: i64) {
         let (side, number) = Self::outwards(n);
         let wanted = if self.keeps() { number + 2 } else { number + 1 };
         let side_ = &self.sides[side];
         let _growing = side_.growing.lock().unwrap_or_else(PoisonError::into_inner);
-        for _ in 0..at_most {
+        loop {
             let (count, last) = {
                 let list = side_.checkpoints.read().unwrap_or_else(PoisonError::into_inner);
                 (list.len(), list.last().cloned().unwrap_or_default())
             };
             if count >= wanted {
-                return true;
+                return;
             }
             let n = if side == 0 { count as i64 - 1 } else { -(count as i64) };
             let mut steps = self.keeps().then(Vec::new);
@@ -243,7 +244,6 @@ impl Level {
             }
             side_.checkpoints.write().unwrap_or_else(PoisonError::into_inner).push(next);
         }
-        side_.checkpoints.read().unwrap_or_else(PoisonError::into_inner).len() >= wanted
     }
 
     /// Makes a chunk from its checkpoint.
@@ -267,22 +267,39 @@ impl Level {
         let (start, end) = if n >= 0 { (early, late) } else { (late, early) };
         let mut points = Points { t: start, q: from.q.clone(), v: from.v.clone() };
         match &self.kind {
-            Kind::Planets { forces, .. } => run(&forces.run(), &mut points, end, steps),
-            Kind::Moons { planet_gm, gm, figure, others_gm, heard: tracks, others } => {
-                let upper = Upper { heard, tracks, others, places: RefCell::default() };
+            Kind::Planets { forces, .. } => run(&forces.run(), GaussRadau::TOLERANCE, &mut points, end, steps),
+            Kind::Moons { planet_gm, gm, figure, others_gm, heard: tracks, others, .. } => {
+                let others = self.others(heard, (early, late), tracks, others);
                 let forces = Moons {
-                    epoch: self.epoch,
                     planet_gm: *planet_gm,
+                    pole: Pole::between(figure.as_ref(), self.epoch, early, late),
                     gm,
                     figure: figure.as_ref(),
                     others_gm,
-                    others: upper,
-                    places: RefCell::default(),
+                    others: &others,
+                    span_s: (early, late),
                 };
-                run(&forces, &mut points, end, steps);
+                run(&forces, MOONS, &mut points, end, steps);
             }
         }
         Checkpoint { q: points.q, v: points.v }
+    }
+
+    /// Where the others are over a stretch of time, good to a part of their distance that does not count in their tides.
+    fn others(&self, heard: &dyn Heard, (early, late): (f64, f64), tracks: &[usize], others: &[Vec<(usize, f64)>]) -> Chunk {
+        const WITHIN: f64 = 1e-9;
+        let mut places = Vec::with_capacity(tracks.len());
+        let mut sample = |x: f64, out: &mut [DVec3]| {
+            places.clear();
+            places.extend(tracks.iter().map(|b| heard.track(*b, early + x * (late - early))));
+            for (out, list) in out.iter_mut().zip(others) {
+                *out = list.iter().fold(DVec3::ZERO, |sum, (k, w)| sum + places[*k] * *w);
+            }
+        };
+        let mut middle = vec![DVec3::ZERO; others.len()];
+        sample(0.5, &mut middle);
+        let within: Vec<f64> = middle.iter().map(|place| WITHIN * place.length() + f64::MIN_POSITIVE).collect();
+        self.fitter.fit(&within, 0, sample)
     }
 
     /// Fits the tracks over chunk `n` to the steps made.
@@ -314,7 +331,11 @@ impl Level {
                         *out = list.iter().fold(DVec3::ZERO, |sum, (k, w)| sum + q[*k] * *w);
                     }
                 }
-                Kind::Moons { .. } => out.copy_from_slice(&q),
+                Kind::Moons { shares, .. } => {
+                    let (moons, aside) = out.split_at_mut(q.len());
+                    moons.copy_from_slice(&q);
+                    aside.fill(q.iter().zip(shares).fold(DVec3::ZERO, |sum, (q, share)| sum + *q * *share));
+                }
             }
         };
         self.fitter.fit(&self.within_m, self.halvings, sample)
@@ -322,8 +343,8 @@ impl Level {
 }
 
 /// Integrates to `end`. Points that cannot go on (two at one place) go straight from there.
-fn run<F: Force>(force: &F, points: &mut Points, end: f64, mut steps: Option<&mut Vec<Made>>) {
-    let mut method = GaussRadau::new(points.q.len(), GaussRadau::TOLERANCE);
+fn run<F: Force>(force: &F, tolerance: f64, points: &mut Points, end: f64, mut steps: Option<&mut Vec<Made>>) {
+    let mut method = GaussRadau::new(points.q.len(), tolerance);
     loop {
         let before = points.t;
         match method.step(force, points, end) {
@@ -346,6 +367,11 @@ fn run<F: Force>(force: &F, points: &mut Points, end: f64, mut steps: Option<&mu
 }
 
 impl Level {
+    /// The checkpoints of a side, from the epoch outwards.
+    pub fn checkpoints(&self, side: usize) -> Vec<Checkpoint> {
+        self.sides[side].checkpoints.read().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
     /// Where the level starts.
     pub fn start(&self) -> Checkpoint {
         self.sides[0].checkpoints.read().unwrap_or_else(PoisonError::into_inner).first().cloned().unwrap_or_default()

@@ -9,16 +9,18 @@
 //! (the polynomials). Accuracy is that of the masses, states and forces given: `assets/systems/sol/system.toml` has the measured errors.
 //! Not here: rotation, ships.
 
-pub mod cache;
-pub mod chunk;
+mod cache;
+mod chunk;
 mod handle;
 mod level;
 mod mean;
 mod moons;
 mod orbit;
 mod planets;
+mod prepare;
 mod tree;
 
+pub use cache::CacheError;
 pub use handle::Ephemeris;
 pub use orbit::{Details, EphemerisError, Mass, MeanOrbit, Orbit, Path};
 

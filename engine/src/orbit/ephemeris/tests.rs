@@ -317,3 +317,43 @@ fn out_of_reach_bodies_are_finite_and_near_their_conics() {
         assert!(e.series(BodyId(1), BodyId(0), t.into(), &mut series) > 0.0);
     }
 }
+
+#[test]
+fn a_cache_gives_the_same_bits_and_is_never_trusted() {
+    use std::sync::atomic::AtomicBool;
+    let (made, fresh) = (Ephemeris::new(system()).unwrap(), Ephemeris::new(system()).unwrap());
+    let (from, to) = (EPOCH.plus(-200 * DAY_TICKS), EPOCH.plus(500 * DAY_TICKS));
+    let heard = std::sync::Mutex::new(Vec::new());
+    assert!(made.prepare(from, to, &|x| heard.lock().unwrap().push(x), &AtomicBool::new(false)));
+    let heard = heard.into_inner().unwrap();
+    assert!(heard.is_sorted() && (heard.last().unwrap() - 1.0).abs() < 1e-9, "{heard:?}");
+    let bytes = made.to_bytes();
+    assert!(made.is_prepared(from, to) && !fresh.is_prepared(from, to) && !made.is_prepared(from, to.plus(400 * DAY_TICKS)));
+    assert_eq!(fresh.from_bytes(&bytes), Ok(()));
+    assert_eq!(fresh.to_bytes(), bytes);
+    let t = EPOCH.plus(333 * DAY_TICKS);
+    for i in 0..5 {
+        assert_eq!(fresh.state(id(i), t), Ephemeris::new(system()).unwrap().state(id(i), t), "body {i}");
+    }
+    assert_eq!(fresh.from_bytes(&bytes), Ok(()), "twice does no harm");
+    let mut other = system();
+    other[4].gm_m3_s2 *= 1.000_001;
+    assert_eq!(Ephemeris::new(other).unwrap().from_bytes(&bytes), Err(CacheError::Foreign));
+    let new = || Ephemeris::new(system()).unwrap();
+    assert_eq!(new().from_bytes(b"nothing"), Err(CacheError::Layout));
+    for at in [60, bytes.len() / 2, bytes.len() - 1] {
+        let mut broken = bytes.clone();
+        broken[at] ^= 1;
+        assert_eq!(new().from_bytes(&broken), Err(CacheError::Damaged), "{at}");
+        assert!(new().from_bytes(&bytes[..at]).is_err());
+    }
+    // Sealed again after a change: only the comparison with this program's own first chunk tells.
+    let mut forged = bytes.clone();
+    forged[44 + 4 + 2 * 4 * 24 + 1] ^= 1;
+    let end = forged.len() - 32;
+    let seal = blake3::hash(&forged[..end]);
+    forged[end..].copy_from_slice(seal.as_bytes());
+    assert_eq!(new().from_bytes(&forged), Err(CacheError::Other));
+    // Cancelled before it begins.
+    assert!(!new().prepare(from, to, &|_| (), &AtomicBool::new(true)));
+}

@@ -11,7 +11,8 @@
 //! | heavy moon | its family's centre of mass, from that of its parent with the parent's light moons |
 //! | light moon | the centre of mass of it and its own moons, from the parent's centre |
 //!
-//! So a moon's place from its planet is one polynomial, and a planet's is that of its centre of mass less what its moons draw it aside.
+//! So a moon's place from its planet is one polynomial, and a planet's is that of its centre of mass less what its light moons draw it
+//! aside, which is a track of its own.
 
 use super::mean;
 use super::orbit::{Details, EphemerisError, Orbit, Path};
@@ -167,11 +168,26 @@ impl Tree {
         }
     }
 
+    /// The track of what the light moons of a body draw it aside: tracks of this kind count on from the bodies.
+    pub fn aside(&self, body: usize) -> usize {
+        self.gm.len() + body
+    }
+
     /// Light moons' part in the place of the body with them, from its centre.
     fn inner(&self, body: usize, weight: f64, out: &mut Vec<(usize, f64)>) {
-        for &c in self.children[body].iter().filter(|c| !self.planetary[**c]) {
-            out.push((c, weight * self.family_gm[c] / self.point_gm[body]));
+        if self.has_light(body) {
+            out.push((self.aside(body), weight));
         }
+    }
+
+    /// True where a body has light moons.
+    pub fn has_light(&self, body: usize) -> bool {
+        self.children[body].iter().any(|c| !self.planetary[*c])
+    }
+
+    /// Weight of a light moon (with its own moons) in the place of its planet with all light ones.
+    pub fn share(&self, moon: usize) -> f64 {
+        self.parent[moon].map_or(0.0, |p| self.family_gm[moon] / self.point_gm[p])
     }
 
     /// Heavy moons' part in the place of the family, from the body with its light moons.

@@ -9,6 +9,7 @@
 //! - [`wisdom_holman`]: Kepler orbits and kicks, moons in a hierarchy of their own, correctors.
 //! - [`sums`]: additions and products that keep what rounding drops.
 //! - [`series`]: arithmetic of power series, the parts of every Taylor method.
+//! - [`taylor`]: adaptive, of high order, for point masses.
 //!
 //! Not here: what attracts whom ([`super::gravity`]), closed forms ([`super::kepler`]).
 
@@ -18,6 +19,7 @@ pub mod gauss_radau;
 pub mod runge_kutta;
 pub mod series;
 pub mod sums;
+pub mod taylor;
 pub mod wisdom_holman;
 
 use glam::DVec3;

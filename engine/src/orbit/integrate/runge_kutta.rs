@@ -1,7 +1,7 @@
 //! Explicit Runge–Kutta methods as tables of coefficients, and the one loop that runs them all.
 //!
 //! For powered flight at the fixed tick: no allocation, no adaptive step, so the same bits always. A coasting ship is not
-//! integrated at all: see `arc`.
+//! integrated at all: see `path`.
 //! - [Hairer, Nørsett & Wanner 1993] "Solving Ordinary Differential Equations I", tables II.1.2 (RK4) and II.5.2 (DOPRI5).
 
 use crate::orbit::State;

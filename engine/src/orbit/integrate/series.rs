@@ -47,7 +47,7 @@ pub fn product(a: &[f64], b: &[f64], k: usize) -> f64 {
 pub fn square(a: &[f64], k: usize) -> f64 {
     let from = (k + 1).saturating_sub(a.len());
     let half = sum(from, k.div_ceil(2), |j| a[j] * a[k - j]);
-    let middle = if k % 2 == 0 && k / 2 < a.len() { a[k / 2] * a[k / 2] } else { 0.0 };
+    let middle = if k.is_multiple_of(2) && k / 2 < a.len() { a[k / 2] * a[k / 2] } else { 0.0 };
     2.0 * half + middle
 }
 
@@ -73,7 +73,7 @@ pub fn dot(a: &[DVec3], b: &[DVec3], k: usize) -> f64 {
 pub fn norm_squared(a: &[DVec3], k: usize) -> f64 {
     let from = (k + 1).saturating_sub(a.len());
     let half = sum(from, k.div_ceil(2), |j| a[j].dot(a[k - j]));
-    let middle = if k % 2 == 0 && k / 2 < a.len() { a[k / 2].length_squared() } else { 0.0 };
+    let middle = if k.is_multiple_of(2) && k / 2 < a.len() { a[k / 2].length_squared() } else { 0.0 };
     2.0 * half + middle
 }
 

@@ -18,7 +18,7 @@ pub use corrector::Corrector;
 pub use hierarchy::Hierarchy;
 
 use super::{Points, Work};
-use crate::orbit::kepler::Conic;
+use crate::orbit::kepler;
 use glam::DVec3;
 use hierarchy::Join;
 use serde::{Deserialize, Serialize};
@@ -153,7 +153,7 @@ impl WisdomHolman {
             return;
         }
         for (join, (r, v)) in self.joins.iter().zip(self.memory.r.iter_mut().zip(&mut self.memory.v)) {
-            (*r, *v) = Conic::new(join.gm, *r, *v).after_raw(dt);
+            (*r, *v) = kepler::propagate_raw(join.gm, *r, *v, dt);
         }
         if let (Some(r), Some(v)) = (self.memory.r.last_mut(), self.memory.v.last()) {
             *r += *v * dt;

@@ -3,7 +3,7 @@
 //! The code is that of the single solve, on registers of the widest kind that the machine has. Orbits that need more than the
 //! usual one step, or whose numbers are wild, are done singly afterwards.
 
-use super::conic::{MOST_TURNS, Scale};
+use super::conic::{LEAST, LONGEST, MOST_TURNS, Scale};
 use super::orbit::Orbit;
 use super::propagate_raw;
 use super::real::{Lanes, Real};
@@ -105,9 +105,18 @@ fn solve<S: Simd>(simd: S, given: &[Column; 8], found: &mut [Column; 7], k: usiz
     );
     let orbit = Orbit::new(load(simd, &given[0], k), r, v);
     let dt = load(simd, &given[7], k);
-    let sure = dt.abs().at_most(orbit.period * MOST_TURNS);
-    let dt = orbit.reduced(dt, || orbit.turn());
-    let s = orbit.guess(dt.0, || orbit.pericentre());
+    // What the single solve sets apart before it begins.
+    let sure = dt.both(dt.abs().at_most((orbit.period * MOST_TURNS).min(dt.all(LONGEST))), dt.all(LEAST).below(orbit.mu.hi));
+    let dt = orbit.reduced(
+        dt,
+        #[inline(always)]
+        || orbit.turn(),
+    );
+    let s = orbit.guess(
+        dt.0,
+        #[inline(always)]
+        || orbit.pericentre(),
+    );
     let (step, [x, y, z], [u, v, w]) = orbit.finish(s, dt);
     let done = Lanes::pick(x.both(sure, step.is_close()), x.all(1.0), x.all(0.0));
     for (column, value) in found.iter_mut().zip([x, y, z, u, v, w, done]) {

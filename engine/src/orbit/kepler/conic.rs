@@ -51,8 +51,13 @@ pub(super) struct Factors {
 /// Revolutions beyond which no digit of the phase is left.
 pub(super) const MOST_TURNS: f64 = 2e15;
 
+/// Scaled time beyond which an open path is taken as straight: its square of distance still fits an f64.
+pub(super) const LONGEST: f64 = 1e140;
+
+/// Scaled gravitational parameter below which it bends nothing that an f64 could tell.
+pub(super) const LEAST: f64 = 1e-60;
+
 /// The power of two at or below |x|, −1023 for what is smaller than a normal number.
-#[expect(clippy::cast_possible_truncation, reason = "eleven bits")]
 fn exponent(x: f64) -> i32 {
     ((x.to_bits() >> 52) & 0x7ff) as i32 - 1023
 }
@@ -120,12 +125,28 @@ impl Scaled {
             return self.straight(dt_s);
         }
         let k = self.scale.speed - self.scale.length;
-        let dt = if self.scale.tame { dt_s * power_of_two(k) } else { times_power(dt_s, k).clamp(-1e300, 1e300) };
+        let dt = if self.scale.tame { dt_s * power_of_two(k) } else { times_power(dt_s, k) };
+        let dt = dt.clamp(-1e300, 1e300);
         let period = self.orbit.period;
         let dt = if dt.abs() > MOST_TURNS * period { libm::remainder(dt, period) } else { dt };
+        if !(dt.abs() <= LONGEST && self.orbit.mu.hi > LEAST) {
+            return self.beyond(dt, dt_s, pericentre());
+        }
         let dt = self.orbit.reduced(dt, turn);
         let (r, v) = self.orbit.after(dt, pericentre);
         self.scale.undo(DVec3::from_array(r), DVec3::from_array(v))
+    }
+
+    /// After a time in which any path that bends no more has become straight, or without a centre worth the name.
+    #[cold]
+    fn beyond(&self, dt: f64, dt_s: f64, pericentre: Pericentre) -> (DVec3, DVec3) {
+        if self.orbit.mu.hi <= LEAST {
+            return self.straight(dt_s);
+        }
+        let bent = LONGEST.copysign(dt);
+        let (r, v) = self.orbit.after((bent, 0.0), || pericentre);
+        let (r, v) = (DVec3::from_array(r), DVec3::from_array(v));
+        self.scale.undo(r + v * (dt - bent), v)
     }
 
     #[cold]

@@ -21,7 +21,7 @@ pub(super) struct Orbit<T = f64> {
     /// β = 2μ/r₀ − v₀² = μ/a: positive on an ellipse, 0 on a parabola.
     pub(super) beta: Pair<T>,
     /// ζ₀ = μ − β r₀ = μ e cos E₀.
-    pub(super) zeta: T,
+    pub(super) zeta: Pair<T>,
     /// √|β|, held off zero.
     pub(super) root: T,
     /// 2πμ/β^(3/2), rounded; infinite on open orbits.
@@ -45,7 +45,7 @@ impl<T: Real> Orbit<T> {
         let (s, e) = pair::sum(pull.hi * 2.0, -speed_squared.hi);
         let beta = Pair::settled(s, e + (pull.lo * 2.0 - speed_squared.lo));
         let (t, f) = pair::sum(speed_squared.hi, -pull.hi);
-        let zeta = (t + (f + (speed_squared.lo - pull.lo))) * distance.value();
+        let zeta = Pair::settled(t, f + (speed_squared.lo - pull.lo)).times(distance);
         let b = beta.value();
         let root = b.abs().sqrt().max(b.all(1e-90));
         let period = T::pick(b.all(0.0).below(b), mu.value() * TAU / (b * root), b.all(f64::INFINITY));

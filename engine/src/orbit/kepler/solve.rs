@@ -46,7 +46,10 @@ impl<T: Real> Step<T> {
         // δ = u(1 − a + 2a² − b + 5ab − 5a³ − c), c = −βu²a/12.
         let aa = a * a;
         let tail = (a - (aa + aa - b)) - a * ((b - aa) * 5.0 + buu * (1.0 / 12.0));
-        Self { d: u - u * tail, square: aa.max(b.abs()).max(buu.abs()), miss, radius, bend, third }
+        let (d, square) = (u - u * tail, aa.max(b.abs()).max(buu.abs()));
+        // At the very centre r = 0, and there is nowhere to go; nor is there by a series that does not converge.
+        let sound = d.both(square.below(d.all(1.0)), d.abs().at_most(d.all(1e150)));
+        Self { d: T::pick(sound, d, d.all(0.0)), square, miss, radius, bend, third }
     }
 
     /// Whether a single step was enough.
@@ -61,7 +64,7 @@ impl<T: Real> Orbit<T> {
     #[inline(always)]
     fn step(&self, g: &Universal<T>, miss: T) -> Step<T> {
         // t′ = r, t″ = r′ = ηG₀ + ζG₁, t‴ = r″ = ζG₀ − βηG₁.
-        let (eta, beta, zeta) = (self.eta.value(), self.beta.value(), self.zeta);
+        let (eta, beta, zeta) = (self.eta.value(), self.beta.value(), self.zeta.value());
         let radius = self.distance.value() + (eta * g.g1 + zeta * g.g2);
         Step::new(radius, miss, eta * g.g0 + zeta * g.g1, zeta * g.g0 - beta * (eta * g.g1), beta)
     }
@@ -104,10 +107,14 @@ impl<T: Real> Orbit<T> {
         let f_less_one = self.pull.times(g2).scaled(-1.0);
         let r = [self.moved(0, f_less_one, gee), self.moved(1, f_less_one, gee), self.moved(2, f_less_one, gee)];
         // Regularised: at the very centre r = 0, where only the velocity has no value.
-        let length = (r[0] * r[0] + r[1] * r[1] + r[2] * r[2]).sqrt();
-        let inverse = length.all(1.0) / length.max(length.all(1e-30));
+        let (more, more_lo) = pair::combined(self.eta, g1, self.zeta, g2);
+        let (radius, radius_lo) = pair::sum(self.distance.hi, more);
+        let radius = Pair::settled(radius, radius_lo + (more_lo + self.distance.lo));
+        let least = Pair { hi: s.all(1e-30), lo: s.all(0.0) };
+        let radius = Pair::pick(least.hi.below(radius.value()), radius, least);
+        let inverse = s.all(1.0) / radius.value();
         let (a, b) = (self.pull.times(g1), self.mu.times(g2));
-        (step, r, [self.turned(0, a, b, inverse), self.turned(1, a, b, inverse), self.turned(2, a, b, inverse)])
+        (step, r, [self.turned(0, a, b, radius, inverse), self.turned(1, a, b, radius, inverse), self.turned(2, a, b, radius, inverse)])
     }
 
     /// A component of r₀ + (f − 1) r₀ + g v₀.
@@ -120,9 +127,11 @@ impl<T: Real> Orbit<T> {
 
     /// A component of v₀ − (a r₀ + b v₀)/r.
     #[inline(always)]
-    fn turned(&self, k: usize, a: Pair<T>, b: Pair<T>, inverse: T) -> T {
+    fn turned(&self, k: usize, a: Pair<T>, b: Pair<T>, radius: Pair<T>, inverse: T) -> T {
         let (way, way_lo) = pair::combined(self.r0.0[k], a, self.v0.0[k], b);
-        self.v0.0[k].value() - (way + way_lo) * inverse
+        let way = Pair::settled(way, way_lo).over(radius, inverse);
+        let (end, end_lo) = pair::sum(self.v0.0[k].value(), -way.hi);
+        end + (end_lo - way.lo)
     }
 }
 
@@ -139,7 +148,7 @@ impl Orbit {
     #[cold]
     fn slowly(&self, mut s: f64, mut step: Step, dt: (f64, f64)) -> ([f64; 3], [f64; 3]) {
         for _ in 0..4 {
-            if !(step.square < LARGE) {
+            if step.square >= LARGE || step.square.is_nan() {
                 break;
             }
             s += step.d;

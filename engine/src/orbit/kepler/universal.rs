@@ -255,3 +255,57 @@ fn exponential<T: Real>(x: T) -> T {
     let e = (r + rr * (even + r * odd)) + 1.0;
     e * shifted.map(|k| f64::from_bits(k.to_bits().wrapping_add(1023) << 52))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_exponential_is_within_a_digit() {
+        for k in 0..=7000 {
+            let x = 0.1 * f64::from(k);
+            let exact = libm::exp(x);
+            assert!((exponential(x) - exact).abs() <= 2.3e-16 * exact, "{x}");
+        }
+    }
+
+    #[test]
+    fn the_functions_are_those_of_the_circle_and_the_hyperbola() {
+        for k in 1..=44 {
+            let s = 0.1 * f64::from(k);
+            let (circle, hyperbola) = (Universal::at(1.0, s), Universal::at(-1.0, s));
+            for (got, exact) in [
+                (circle.g0, libm::cos(s)),
+                (circle.g1, libm::sin(s)),
+                (circle.g2, 2.0 * libm::sin(0.5 * s) * libm::sin(0.5 * s)),
+                (hyperbola.g0, libm::cosh(s)),
+                (hyperbola.g1, libm::sinh(s)),
+                (hyperbola.g2, 2.0 * libm::sinh(0.5 * s) * libm::sinh(0.5 * s)),
+            ] {
+                assert!((got - exact).abs() < 1e-15 * exact.abs().max(1.0), "s = {s}: {got} for {exact}");
+            }
+            // On a parabola they are powers.
+            let parabola = Universal::at(0.0, s);
+            assert!(parabola.g0 == 1.0 && parabola.g1 == s && (parabola.g3 - s * s * s / 6.0).abs() < 3e-16 * s * s * s);
+        }
+    }
+
+    #[test]
+    fn the_exact_ones_agree_and_satisfy_their_identities_beyond_an_f64() {
+        for x in [-900.0, -30.0, -15.0, -3.0, -1e-3, 1e-9, 0.5, 5.0, 12.0, 20.0] {
+            for s in [0.625, -1.5] {
+                let beta = Pair::of(x / (s * s));
+                let (exact, plain) = (Exact::at(beta, s), Universal::at(beta.value(), s));
+                let rounded = exact.rounded();
+                for (a, b) in [(rounded.g1, plain.g1), (rounded.g2, plain.g2), (rounded.g3, plain.g3)] {
+                    assert!((a - b).abs() < 2e-15 * b.abs().max(1e-3), "x = {x}: {a} {b}");
+                }
+                // βG₂² = 2G₂ − G₁², to 2⁻⁵⁵ of its terms.
+                let (g1, g2) = (exact.g1, exact.g2);
+                let left = g1.times(g1).plus(beta.times(g2).times(g2)).plus(g2.scaled(-2.0));
+                let size = g1.value() * g1.value() + 2.0 * g2.value().abs();
+                assert!(left.value().abs() < 2.7e-17 * size, "x = {x}, s = {s}: {:e}", left.value() / size);
+            }
+        }
+    }
+}

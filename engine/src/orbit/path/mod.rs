@@ -1,9 +1,9 @@
 //! Path: where a coasting ship goes under every force that counts, as a chain of polynomials in time.
 //!
 //! Read [`knot`] (a place to go on from), [`step`] (one natural step and how it ends), [`recurrence`] (its coefficients),
-//! [`model`] (what a system is to a ship), [`roots`] (how nothing is jumped over). A [`Path`] holds the step that says where
-//! the ship is now; it is sampled, never stepped by whoever looks, so a sample depends on the knot and the tick alone: not on
-//! warp, frame rate, or how often it was looked at.
+//! [`model`] (what a system is to a ship), [`roots`] (how nothing is jumped over), [`swarm`] (thousands at once), [`full`] (the
+//! yardstick). A [`Path`] holds the step that says where the ship is now; it is sampled, never stepped by whoever looks, so a
+//! sample depends on the knot and the tick alone: not on warp, frame rate, or how often it was looked at.
 //!
 //! The state is written about the body that dominates (at 30 AU from the Sun an ulp is a millimetre), and rewritten, at the
 //! moment of crossing, about the next one. Not here: the path ahead with burns ([`super::predict`]).

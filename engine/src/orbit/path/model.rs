@@ -59,6 +59,11 @@ impl Model {
         Self { bodies, fields, children }
     }
 
+    /// The same bodies under another bound.
+    pub fn bounded(&self, bound: Bound) -> Self {
+        Self::new(self.bodies.clone(), bound)
+    }
+
     /// Number of bodies.
     pub fn len(&self) -> usize {
         self.bodies.len()

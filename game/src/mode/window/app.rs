@@ -5,6 +5,7 @@ mod asked;
 mod drawing;
 mod watch;
 
+use super::ahead::Ahead;
 use super::canvas::Canvas;
 use super::clock::Clock;
 use super::flight::{self, Flight};
@@ -21,6 +22,7 @@ use crate::settings::Settings;
 use crate::sound::{Sound, Volumes};
 use crate::view::CameraMode;
 use crate::world::World;
+use crate::world::eclipse::almanac::Event;
 use crate::world::readout::Situation;
 use engine::gpu::BackendChoice;
 use engine::render::{RenderError, Renderer, RendererOptions};
@@ -61,7 +63,10 @@ pub struct App {
     renderer: Option<Renderer>,
     pipelines: Option<Job<Result<Renderer, RenderError>>>,
     world: Option<Job<Begun>>,
+    eclipses: Option<Job<Vec<Event>>>,
     flight: Option<Flight>,
+    /// The paths of the flight's bodies, being worked out.
+    ahead: Option<Ahead>,
     watch: watch::Watch,
     clicked: Vec<Action>,
     clock: Clock,
@@ -107,7 +112,9 @@ impl App {
             renderer: None,
             pipelines: None,
             world: None,
+            eclipses: None,
             flight: None,
+            ahead: None,
             watch: watch::Watch::default(),
             clicked: Vec::new(),
             clock: Clock::default(),
@@ -174,6 +181,8 @@ impl App {
             return;
         }
         self.hear_watch();
+        self.hear_eclipses();
+        self.hud.paths_ahead = self.ahead.as_mut().and_then(Ahead::poll);
         self.set_focus();
         for control in self.input.take_view_controls() {
             self.control(control);

@@ -1,8 +1,9 @@
 //! `syzygy play`: the window. Wall-clock time enters here ([`clock`]) and nowhere else.
 //!
 //! [`app`] is the loop, [`canvas`] the window with its device, [`flight`] the session with its camera and saves, [`job`]
-//! the work beside it. Not here: what panels look like ([`crate::hud`]), what keys mean ([`crate::input`]).
+//! the work beside it, [`ahead`] the paths of the bodies worked out beside it. Not here: what panels look like ([`crate::hud`]), what keys mean ([`crate::input`]).
 
+mod ahead;
 mod app;
 pub mod canvas;
 pub mod clock;
@@ -25,6 +26,8 @@ pub struct Opening {
     pub assets: Assets,
     /// Folder of saves and settings.
     pub data: PathBuf,
+    /// Folder of what can be made again.
+    pub cache: Option<PathBuf>,
 }
 
 /// `syzygy play`.
@@ -33,7 +36,7 @@ pub struct Opening {
 /// A folder that is missing. What goes wrong later is told where it happens, and is in the exit code.
 pub fn play(args: &PlayArgs) -> Result<ExitCode, super::Error> {
     let assets = Assets::new(places::assets(&args.places)?, places::mods(&args.places)?);
-    Ok(run(Opening { args: args.clone(), assets, data: places::data_dir(&args.places) }))
+    Ok(run(Opening { args: args.clone(), assets, data: places::data_dir(&args.places), cache: places::cache_dir(&args.places) }))
 }
 
 /// Opens the window and plays until it is closed. Exit code 0, or 2 where no window or no device can be had.

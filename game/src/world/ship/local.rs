@@ -5,7 +5,7 @@ use engine::air::density::Sample;
 use engine::orbit::gravity::point_mass;
 use engine::orbit::gravity::zonal::zonal;
 use engine::orbit::{BodyId, State};
-use engine::space::{Centred, Fixed, Icrf, Position, Rotation};
+use engine::space::{Centred, Fixed, Icrf, Position, Rotation, Vector};
 use engine::time::SimTime;
 use glam::DVec3;
 
@@ -43,7 +43,9 @@ impl<'a> Local<'a> {
     pub fn new(system: &'a System, time: SimTime, id: BodyId, state: &State<Centred>) -> Self {
         let body = system.body(id);
         let (r, v) = (state.position.0, state.velocity.0);
-        let spin = body.spin.angular_velocity(time).0;
+        // The axes once; the turning is about their pole.
+        let icrf_from_fixed = body.spin.icrf_from_fixed(time);
+        let spin = icrf_from_fixed.vector(Vector::xyz(0.0, 0.0, body.spin.rate_rad_s())).0;
         let altitude_m = r.length() - body.radius_m;
         Self {
             system,
@@ -56,7 +58,7 @@ impl<'a> Local<'a> {
             altitude_m,
             spin,
             v_surface: v - spin.cross(r),
-            icrf_from_fixed: body.spin.icrf_from_fixed(time),
+            icrf_from_fixed,
             air: body.air.as_ref().map(|a| a.column.at(altitude_m)).unwrap_or_default(),
         }
     }

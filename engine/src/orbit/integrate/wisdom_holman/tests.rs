@@ -69,7 +69,7 @@ fn one_pair_is_kepler_s_at_any_step() {
     let gm = [0.7, 0.3];
     let start = Points { t: 5.0, q: vec![DVec3::Y, DVec3::X], v: vec![DVec3::Z, DVec3::new(0.1, 0.4, 0.3)] };
     let end = run(&gm, &Hierarchy::chain(2), &start, 1.7, Corrector::Fifth, 50.0);
-    let (r, _) = Conic::new(1.0, start.q[1] - start.q[0], start.v[1] - start.v[0]).after_raw(45.0);
+    let (r, _) = kepler::Conic::new(1.0, start.q[1] - start.q[0], start.v[1] - start.v[0]).after_raw(45.0);
     let centre = start.q[0] * 0.7 + start.q[1] * 0.3 + (start.v[0] * 0.7 + start.v[1] * 0.3) * 45.0;
     assert!((end.q[1] - end.q[0] - r).length() < 1e-12 && (end.q[0] * 0.7 + end.q[1] * 0.3 - centre).length() < 1e-12);
 }

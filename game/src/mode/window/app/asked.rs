@@ -2,12 +2,18 @@
 
 use super::{App, volumes};
 use crate::command::Action;
-use crate::hud::{Request, Screen};
+use crate::hud::{Request, Screen, calendar};
 use crate::input::controls::Control;
 use crate::mode::open::Start;
 use crate::mode::window::flight;
+use crate::mode::window::job::{Job, Outcome};
 use crate::save::slots::Kind;
+use crate::world::World;
+use crate::world::eclipse::almanac::{self, Event};
+use crate::world::eclipse::visit::{self, Seat};
 use crate::world::readout::Situation;
+use engine::orbit::BodyId;
+use engine::time::SimTime;
 use std::path::PathBuf;
 
 impl App {
@@ -47,7 +53,7 @@ impl App {
             C::Pause => match screen {
                 Screen::Flight => self.hud.screen = Screen::Pause,
                 Screen::Main | Screen::Crash => {}
-                Screen::Starts | Screen::Saves | Screen::Options => {
+                Screen::Starts | Screen::Calendar | Screen::Saves | Screen::Options => {
                     self.hud.screen = self.hud.back();
                     self.keep();
                 }
@@ -78,6 +84,8 @@ impl App {
                 self.straight_in = true;
                 self.begin(Start::Named(key));
             }
+            Request::Eclipses(on, from) => self.look_for_eclipses(on, from),
+            Request::Visit(event, seat) => self.visit(&event, seat),
             Request::Load(path) => self.load(Some(path)),
             Request::Continue => self.load(None),
             Request::SaveAs(name) => {
@@ -118,6 +126,43 @@ impl App {
         }
     }
 
+    fn look_for_eclipses(&mut self, on: BodyId, from: SimTime) {
+        let Some(flight) = &self.flight else { return };
+        let system = flight.session.world.system.clone();
+        let days = calendar::YEARS * 365.25;
+        self.eclipses = Some(Job::spawn(move |progress| {
+            almanac::coming(&system, on, from, days, calendar::ROWS, &|fraction| progress(fraction, "eclipses"))
+        }));
+    }
+
+    /// Hears from the search for eclipses; a later question has put away an earlier one.
+    pub(super) fn hear_eclipses(&mut self) {
+        let Some(job) = &mut self.eclipses else { return };
+        let found = match job.poll() {
+            Outcome::Running => {
+                self.hud.calendar.progress = job.fraction;
+                return;
+            }
+            Outcome::Done(found) => found,
+            Outcome::Died => Vec::new(),
+        };
+        self.eclipses = None;
+        self.hud.calendar.found = Some(found);
+    }
+
+    /// A new flight, in the same ship, at the place and minute of an eclipse.
+    fn visit(&mut self, event: &Event, seat: Seat) {
+        let Some(flight) = &self.flight else { return };
+        let (system, ship) = (flight.session.world.system.clone(), flight.session.world.ship.spec.clone());
+        let Some(start) = visit::start(&system, event, &ship.key, seat) else { return };
+        self.auto_save();
+        self.straight_in = true;
+        self.world = Some(Job::spawn(move |_| match World::from_start(system, ship, &start) {
+            Ok(world) => Ok((world, Vec::new())),
+            Err(e) => Err(e.to_string()),
+        }));
+    }
+
     pub(super) fn apply(&mut self) {
         if let Some(canvas) = &mut self.canvas {
             canvas.apply(&self.settings.video);
@@ -139,7 +184,7 @@ impl App {
         // The flight behind the main menu and its pages is a picture, not a flight; and nobody wants to go on with a wreck.
         let flying = match self.hud.screen {
             Screen::Main => false,
-            Screen::Starts | Screen::Saves | Screen::Options => self.hud.menu.flying,
+            Screen::Starts | Screen::Calendar | Screen::Saves | Screen::Options => self.hud.menu.flying,
             _ => true,
         };
         if let Some(flight) = self.flight.as_ref().filter(|f| flying && f.readout.situation != Situation::Crashed) {

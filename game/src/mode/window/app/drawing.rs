@@ -25,7 +25,7 @@ pub(super) struct Still {
 
 impl Still {
     fn holds(&self, screen: Screen, rig: &Rig, size_px: [u32; 2], world: &World) -> bool {
-        let menu = matches!(screen, Screen::Main | Screen::Starts | Screen::Saves | Screen::Options | Screen::Pause);
+        let menu = matches!(screen, Screen::Main | Screen::Starts | Screen::Calendar | Screen::Saves | Screen::Options | Screen::Pause);
         let Some((at, its_rig, its_size, time)) = &self.taken else { return false };
         menu && its_rig == rig && *its_size == size_px && *time == world.time && at.elapsed().as_secs_f64() < STILL_S
     }

@@ -3,6 +3,7 @@
 
 use super::App;
 use crate::assets::{AssetErrors, Reloader};
+use crate::mode::window::ahead::Ahead;
 use crate::mode::window::job::{Job, Outcome};
 use crate::world::system::System;
 use std::sync::Arc;
@@ -17,8 +18,16 @@ pub struct Watch {
 }
 
 impl App {
+    /// Works out the paths of the flight's bodies beside it; what was begun for other ones ends.
+    fn look_ahead(&mut self) {
+        let Some(flight) = &self.flight else { return };
+        let system = &flight.session.world.system;
+        self.ahead = Some(Ahead::start(&system.ephemeris, &system.key, self.opening.cache.as_deref()));
+    }
+
     /// Watches the system of the flight.
     pub(super) fn watch_system(&mut self) {
+        self.look_ahead();
         let Some(flight) = &self.flight else { return };
         let key = flight.session.world.system.key.as_str();
         if !self.watch.stale && self.watch.reloader.as_ref().is_some_and(|r| r.key() == key) {
@@ -51,6 +60,7 @@ impl App {
         match read {
             Some(Ok(system)) => {
                 self.hud.fault = None;
+                system.ephemeris.take_over(&flight.session.world.system.ephemeris);
                 self.watch.stale = !flight.session.adopt(&system);
                 flight.readout = flight.session.world.readout();
                 self.hud.notice(if self.watch.stale {
@@ -58,6 +68,7 @@ impl App {
                 } else {
                     format!("{}: changed files taken over", system.name)
                 });
+                self.look_ahead();
             }
             Some(Err(errors)) => self.hud.fault = Some(errors.lines()),
             None => {}

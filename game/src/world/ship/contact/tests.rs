@@ -24,6 +24,7 @@ fn rock(ground: bool) -> Arc<System> {
         radius_m,
         soi_radius_m: f64::INFINITY,
         spin: Spin { pole_dec_rad: [1.2, 0.0], meridian_rad: [0.3, core::f64::consts::TAU * 86_400.0 / 86_164.1], ..Spin::default() },
+        shape: engine::orbit::eclipse::Shape::sphere(radius_m),
         figure: None,
         albedo: Vec3::splat(0.1),
         intensity_cd: Vec3::ZERO,

@@ -1,7 +1,12 @@
 //! Eclipses: who can hide the star from whom, now. The geometry of a disc behind a disc is `engine::light`; choosing the
 //! casters, and naming the event, is ours.
 //!
-//! Not here: predicting eclipses ahead of time.
+//! Read [`almanac`] for eclipses ahead of time and [`visit`] for beginning a flight at one.
+
+pub mod almanac;
+#[cfg(test)]
+mod tests;
+pub mod visit;
 
 use super::system::System;
 use engine::orbit::{BodyId, State};

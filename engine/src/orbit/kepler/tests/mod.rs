@@ -1,4 +1,8 @@
-//! Kepler's problem against closed forms, REBOUND's regimes (`reference/kepler_rebound.csv`) and 30-digit anchors.
+//! Kepler's problem against closed forms and 30-digit anchors; by regime against 50-digit solutions in [`regimes`], where
+//! paths of the code meet in [`seams`].
+
+mod regimes;
+mod seams;
 
 use super::*;
 use crate::space::Centred;
@@ -22,7 +26,7 @@ fn a_400_km_orbit_keeps_its_energy_for_100_revolutions() {
     let e0 = energy(gm, &start);
     let period = Conic::new(gm, start.position.0, start.velocity.0).period_s();
     let worst = (0..=4000).map(|i| (energy(gm, &propagate(gm, &start, period * f64::from(i) / 40.0)) / e0 - 1.0).abs()).fold(0.0, f64::max);
-    assert!(worst < 5e-15, "relative energy error {worst:e}");
+    assert!(worst < 3e-15, "relative energy error {worst:e}");
 }
 
 #[test]
@@ -132,22 +136,6 @@ fn radial_paths_fall_through_the_centre_and_return() {
         assert!(out.position.is_finite() && out.velocity.is_finite(), "{dt}: {out:?}");
         if dt > 0.0 {
             assert!((energy(1.0, &out) / 11.5 - 1.0).abs() < 1e-9);
-        }
-    }
-}
-
-#[test]
-fn nothing_makes_nan() {
-    let odd = [0.0, -0.0, 1.0, -1.0, 1e-300, 1e-30, 1e30, 1e150];
-    for gm in [-1.0, 0.0, 1e-20, 1.0, 1e20] {
-        for x in odd {
-            for v in odd {
-                for dt in [0.0, 1e-300, 1.0, -1e9, 1e18] {
-                    let out = propagate(gm, &state([x, 0.5 * x, 0.0], [v, 0.0, 0.3 * v]), dt);
-                    let nan = out.position.0.is_nan() || out.velocity.0.is_nan();
-                    assert!(!nan, "gm {gm} x {x} v {v} dt {dt}: {out:?}");
-                }
-            }
         }
     }
 }

@@ -1,0 +1,48 @@
+//! The arguments of `bench`.
+
+use super::Places;
+use clap::Args;
+use std::path::PathBuf;
+
+/// Arguments of `bench orbit`.
+#[derive(Clone, Debug, Args)]
+pub struct BenchOrbitArgs {
+    /// Write the rows here instead of stdout
+    #[arg(long, value_name = "F.json")]
+    pub json: Option<PathBuf>,
+    /// Draw error against CPU time and evaluations, a picture a case, into this folder
+    #[arg(long, value_name = "DIR")]
+    pub plot: Option<PathBuf>,
+    /// Rows of other programs, measured on this machine (tests/peers), to draw beside
+    #[arg(long, value_name = "F.json")]
+    pub peers: Option<PathBuf>,
+    /// Only these cases; several may be named, `NAME@T` ends at a reference time
+    #[arg(long, value_name = "NAME")]
+    pub case: Vec<String>,
+    /// Only these integrators
+    #[arg(long, value_name = "M")]
+    pub method: Vec<String>,
+    /// Evaluations of the force after which a method of fixed step is not refined further
+    #[arg(long, value_name = "N", default_value_t = 2_000_000, value_parser = clap::value_parser!(u64).range(1..))]
+    pub most: u64,
+    /// Stress the integrators instead: long spans, spikes of the step, scales, near collisions
+    #[arg(long)]
+    pub stress: bool,
+    #[command(flatten)]
+    /// Folders.
+    pub places: Places,
+}
+
+/// Arguments of `bench ships`.
+#[derive(Clone, Debug, Args)]
+pub struct BenchShipsArgs {
+    /// Write the rows here instead of stdout
+    #[arg(long, value_name = "F.json")]
+    pub json: Option<PathBuf>,
+    /// The system, a folder of assets/systems
+    #[arg(long, value_name = "NAME", default_value = "sol")]
+    pub system: String,
+    #[command(flatten)]
+    /// Folders.
+    pub places: Places,
+}
