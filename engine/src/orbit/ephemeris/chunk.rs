@@ -210,7 +210,8 @@ impl Fitter {
         (all, worst)
     }
 
-    /// The fewest segments that hold a track, from a representation finer than needed.
+    /// The fewest segments that hold a track, from a representation finer than needed. Terms and halvings are below 256.
+    #[allow(clippy::cast_possible_truncation)]
     fn coarsest(&self, fine: &[[DVec3; TERMS]], depth: u32, within: f64) -> (Vec<[DVec3; TERMS]>, u32) {
         let own = Chunk {
             pieces: vec![Piece { first: 0, terms: TERMS as u8, halvings: depth as u8 }],

@@ -30,7 +30,8 @@ pub struct Checkpoint {
     pub v: Vec<DVec3>,
 }
 
-/// What moves the bodies of a level.
+/// What moves the bodies of a level. One a level: the difference in size costs nothing.
+#[allow(clippy::large_enum_variant)]
 #[derive(Clone, Debug)]
 pub enum Kind {
     /// The planetary level; how its tracks follow from the places of its members.
@@ -193,6 +194,7 @@ impl Level {
     }
 
     /// Lets `look` see chunk `n`, which is made where it is not there.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
     pub fn view<R>(&self, heard: &dyn Heard, n: i64, look: impl FnOnce(&Chunk) -> R) -> R {
         if self.keeps() {
             if self.kept(n).is_none() {

@@ -172,10 +172,10 @@ pub fn flags(chart: &Chart<'_, '_>, lines: &Lines, pointer: Option<Pos2>, taken:
         if !chart.rect.contains(at) {
             continue;
         }
-        if let Some(off) = pointer.map(|p| p.distance(at)).filter(|d| *d < NEAR) {
-            if hovered.is_none_or(|h| off < h.0) {
-                hovered = Some((off, flag, at));
-            }
+        if let Some(off) = pointer.map(|p| p.distance(at)).filter(|d| *d < NEAR)
+            && hovered.is_none_or(|h| off < h.0)
+        {
+            hovered = Some((off, flag, at));
         }
         // The equator is crossed at much the same place with and without the burns.
         let both = matches!(flag.mark.kind, Kind::AscendingNode | Kind::DescendingNode);
