@@ -52,6 +52,8 @@ fn planet_and_moon() -> Arc<System> {
     let mut bodies = vec![rock(planet, 6.371e6, Spin::default(), None), rock(moon, 1.737_4e6, Spin::default(), None)];
     bodies[1].key = "moon".into();
     bodies[1].parent = Some(BodyId(0));
+    // A save tells bodies apart by their keys.
+    bodies[1].key = "moon".into();
     bodies[1].soi_radius_m = 6.6e7;
     let speed = ((planet + moon) / distance).sqrt();
     let state = State { position: Position::xyz(distance, 0.0, 0.0), velocity: Velocity::xyz(0.0, speed, 0.0) };

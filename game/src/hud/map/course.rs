@@ -1,7 +1,7 @@
 //! The path ahead for the map: predicted once and kept until something changes, at once where that is quick, on a thread where it
 //! is not, so that no frame waits for it.
 //!
-//! A kept prediction holds as long as the ship is where it says ([`Kept::holds`]); nothing is computed for a frame in which the
+//! A kept prediction holds as long as the ship is where it says; nothing is computed for a frame in which the
 //! ship only went on along its path. Not here: the prediction itself ([`engine::orbit::predict`]), its lines ([`super::lines`]).
 
 use crate::command::Node;
@@ -31,7 +31,7 @@ const WORN: f64 = 0.15;
 
 /// What a prediction is made for.
 #[derive(Clone)]
-pub struct Ask {
+struct Ask {
     system: Arc<System>,
     knot: Knot,
     /// Planned burns, and how much of the first has still to be flown once it has been begun, m/s.
