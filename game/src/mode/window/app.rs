@@ -14,7 +14,7 @@ use crate::cli::{Backend, DEFAULT_START};
 use crate::command::Action;
 use crate::hud::{Hud, Lists, Screen};
 use crate::input::controls::{Analogue, Control};
-use crate::input::{Focus, Input};
+use crate::input::{Focus, Input, Step};
 use crate::mode::open::{self, Start};
 use crate::save::Slots;
 use crate::settings::Settings;
@@ -29,7 +29,7 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::Instant;
 use winit::application::ApplicationHandler;
-use winit::dpi::PhysicalSize;
+use winit::dpi::{LogicalSize, PhysicalSize, Size};
 use winit::event::{ElementState, MouseButton, MouseScrollDelta, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow};
 use winit::keyboard::PhysicalKey;
@@ -175,6 +175,7 @@ impl App {
         }
         self.hear_watch();
         self.set_focus();
+        self.step_through_menus();
         for control in self.input.take_view_controls() {
             self.control(control);
         }
@@ -225,7 +226,7 @@ impl App {
     }
 
     fn set_focus(&mut self) {
-        let typing = self.canvas.as_ref().is_some_and(|c| c.ctx.egui_wants_keyboard_input());
+        let typing = self.canvas.as_ref().is_some_and(|c| c.ctx.text_edit_focused());
         let focus = if self.hud.options.waiting.is_some() || typing {
             Focus::Text
         } else if self.hud.screen.runs() && !self.hud.help && self.hud.message.is_none() {
@@ -234,7 +235,27 @@ impl App {
         } else {
             Focus::Menu
         };
+        if let (Focus::Flight | Focus::Camera, Some(canvas)) = (focus, &self.canvas) {
+            // Tab or an arrow must not wander through the panels in flight: Enter would press what it stands on.
+            canvas.ctx.memory_mut(|m| m.focused().map(|id| m.surrender_focus(id)));
+        }
         self.input.set_focus(focus);
+    }
+
+    /// A pad's way through menus: what the arrows and Enter do on a keyboard.
+    fn step_through_menus(&mut self) {
+        for step in self.input.take_steps() {
+            let key = match step {
+                Step::Up => egui::Key::ArrowUp,
+                Step::Down => egui::Key::ArrowDown,
+                Step::Left => egui::Key::ArrowLeft,
+                Step::Right => egui::Key::ArrowRight,
+                Step::Take => egui::Key::Enter,
+            };
+            if let Some(canvas) = &mut self.canvas {
+                canvas.press(key);
+            }
+        }
     }
 
     fn tick(&mut self, dt_s: f64) {
@@ -362,8 +383,9 @@ impl ApplicationHandler for App {
         if self.canvas.is_some() {
             return;
         }
-        let (width, height) = self.opening.args.size.unwrap_or((1280, 720));
-        let attributes = Window::default_attributes().with_title("Syzygy").with_inner_size(PhysicalSize::new(width, height));
+        // A size that is asked for is in pixels, as pictures are; otherwise the window is as large on every display.
+        let size = self.opening.args.size.map_or(Size::from(LogicalSize::new(1280, 720)), |(w, h)| PhysicalSize::new(w, h).into());
+        let attributes = Window::default_attributes().with_title("Syzygy").with_inner_size(size);
         let window = match event_loop.create_window(attributes) {
             Ok(window) => Arc::new(window),
             Err(e) => return self.end(event_loop, &format!("no window can be opened: {e}")),
@@ -399,6 +421,12 @@ impl ApplicationHandler for App {
             }
             WindowEvent::Resized(size) => {
                 if let Some(canvas) = &mut self.canvas {
+                    canvas.resize(size.width, size.height);
+                }
+            }
+            WindowEvent::ScaleFactorChanged { .. } => {
+                if let Some(canvas) = &mut self.canvas {
+                    let size = canvas.window.inner_size();
                     canvas.resize(size.width, size.height);
                 }
             }
