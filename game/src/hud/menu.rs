@@ -146,7 +146,10 @@ pub fn pause(ctx: &egui::Context, hud: &mut Hud, reply: &mut Reply) {
                 hud.screen = Screen::Flight;
             }
             ui.horizontal(|ui| {
-                ui.add(egui::TextEdit::singleline(&mut hud.menu.name).desired_width(170.0).hint_text("name of the save"));
+                let field = ui.add(egui::TextEdit::singleline(&mut hud.menu.name).desired_width(170.0).hint_text("name of the save"));
+                // It would keep the arrows up and down, and a walk through the menu would end in it.
+                let filter = egui::EventFilter { horizontal_arrows: true, ..Default::default() };
+                ui.memory_mut(|m| m.set_focus_lock_filter(field.id, filter));
                 let named = !hud.menu.name.trim().is_empty();
                 if ui.add_enabled(named, egui::Button::new("Save")).clicked() {
                     reply.requests.push(Request::SaveAs(hud.menu.name.trim().to_owned()));
@@ -191,7 +194,10 @@ mod tests {
                 key.map(|key| egui::Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers: egui::Modifiers::NONE });
             let screen_rect = Some(egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(1280.0, 720.0)));
             let input = egui::RawInput { screen_rect, events: event.into_iter().collect(), ..Default::default() };
-            let output = ctx.run_ui(input, |ui| main(ui.ctx(), hud, &lists, &mut reply));
+            let output = ctx.run_ui(input, |ui| match hud.screen {
+                Screen::Pause => pause(ui.ctx(), hud, &mut reply),
+                _ => main(ui.ctx(), hud, &lists, &mut reply),
+            });
             output.drop_without_applying_deltas();
         }
         reply
@@ -208,5 +214,9 @@ mod tests {
         assert_eq!(hud.screen, Screen::Options);
         let reply = keys(&mut Hud::default(), &[ArrowDown, ArrowDown, ArrowDown, Enter]);
         assert_eq!(reply.requests, [Request::Quit]);
+        // Past the name of a save, too.
+        let mut hud = Hud { screen: Screen::Pause, ..Hud::default() };
+        let reply = keys(&mut hud, &[ArrowDown, ArrowDown, ArrowDown, Enter]);
+        assert_eq!(reply.requests, [Request::Quickload]);
     }
 }

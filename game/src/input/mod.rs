@@ -236,20 +236,20 @@ impl Input {
     }
 
     fn press(&mut self, source: Source) {
-        if self.focus == Focus::Text {
-            self.caught = Some(source);
-            return;
-        }
-        if let (Focus::Menu, Source::Pad(button)) = (self.focus, source) {
+        if let (Focus::Menu | Focus::Text, Source::Pad(button)) = (self.focus, source) {
             match button {
                 PadButton::DPadUp => self.steps.push(Step::Up),
                 PadButton::DPadDown => self.steps.push(Step::Down),
                 PadButton::DPadLeft => self.steps.push(Step::Left),
                 PadButton::DPadRight => self.steps.push(Step::Right),
                 PadButton::South => self.steps.push(Step::Take),
-                PadButton::East => return self.queued.push(Control::Pause),
+                PadButton::East if self.focus == Focus::Menu => return self.queued.push(Control::Pause),
                 _ => {}
             }
+        }
+        if self.focus == Focus::Text {
+            self.caught = Some(source);
+            return;
         }
         for control in Control::ALL {
             let heard = matches!(self.focus, Focus::Flight | Focus::Camera)

@@ -54,6 +54,7 @@ pub struct App {
     settings: Settings,
     slots: Slots,
     lists: Lists,
+    entered: Screen,
     input: Input,
     hud: Hud,
     sound: Option<Sound>,
@@ -96,6 +97,7 @@ impl App {
         Self {
             exit: ExitCode::SUCCESS,
             lists: flight::lists(&opening.assets, &slots),
+            entered: Screen::Main,
             input: Input::new(settings.controls.clone()),
             straight_in: opening.args.start.is_some(),
             opening,
@@ -176,6 +178,12 @@ impl App {
         self.hear_watch();
         self.set_focus();
         self.step_through_menus();
+        // Quick and automatic saves were written since.
+        if self.hud.screen != std::mem::replace(&mut self.entered, self.hud.screen)
+            && matches!(self.hud.screen, Screen::Saves | Screen::Main)
+        {
+            self.lists = flight::lists(&self.opening.assets, &self.slots);
+        }
         for control in self.input.take_view_controls() {
             self.control(control);
         }
@@ -252,7 +260,8 @@ impl App {
                 Step::Right => egui::Key::ArrowRight,
                 Step::Take => egui::Key::Enter,
             };
-            if let Some(canvas) = &mut self.canvas {
+            // While a control is bound, the press is the binding's.
+            if let (Some(canvas), None) = (&mut self.canvas, &self.hud.options.waiting) {
                 canvas.press(key);
             }
         }
