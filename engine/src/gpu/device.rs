@@ -120,7 +120,11 @@ impl Gpu {
     {
         first_working(choice, |instance_of, backend| {
             let instance = wgpu::Instance::new(instance_of(backend).with_display_handle(Box::new(window.clone())));
-            let surface = instance.create_surface(window.clone()).map_err(|e| format!("it cannot present to this window: {e}"))?;
+            let surface = match instance.create_surface(window.clone()) {
+                Ok(surface) => surface,
+                // Where no driver is, that says more than that there is no surface.
+                Err(e) => return Err(Self::open(instance, None).err().unwrap_or(format!("it cannot present to this window: {e}"))),
+            };
             let gpu = Self::open(instance, Some(&surface))?;
             Ok((gpu, surface))
         })
@@ -132,7 +136,7 @@ impl Gpu {
             compatible_surface: surface,
             ..Default::default()
         };
-        let adapter = pollster::block_on(instance.request_adapter(&request)).map_err(|e| e.to_string())?;
+        let adapter = pollster::block_on(instance.request_adapter(&request)).map_err(|e| concerning(&e.to_string()))?;
         let info = adapter.get_info();
         if !adapter.get_downlevel_capabilities().flags.contains(wgpu::DownlevelFlags::COMPUTE_SHADERS) {
             return Err(format!("{} has no compute shaders", info.name));
@@ -190,6 +194,13 @@ impl Gpu {
     }
 }
 
+/// What an error says of the backend that was asked for: wgpu also lists those that were not.
+fn concerning(error: &str) -> String {
+    let Some((what, each)) = error.split_once("; ") else { return error.to_owned() };
+    let asked: Vec<&str> = each.split(", ").filter(|part| !part.ends_with("not requested")).collect();
+    if asked.is_empty() { what.to_owned() } else { format!("{what}: {}", asked.join(", ")) }
+}
+
 fn first_working<T>(
     choice: BackendChoice,
     open: impl Fn(&dyn Fn(wgpu::Backend) -> wgpu::InstanceDescriptor, wgpu::Backend) -> Result<T, String>,
@@ -227,6 +238,14 @@ mod tests {
         for part in ["vulkan: no driver", "gl: no compute shaders", "apt install mesa-vulkan-drivers", "--backend"] {
             assert!(text.contains(part), "{text}");
         }
+    }
+
+    #[test]
+    fn a_reason_speaks_of_the_backend_that_was_asked_for() {
+        let all = "No suitable graphics adapter found; noop not requested, vulkan drivers/libraries could not be loaded, gl not requested";
+        assert_eq!(concerning(all), "No suitable graphics adapter found: vulkan drivers/libraries could not be loaded");
+        assert_eq!(concerning("No adapter; gl not requested"), "No adapter");
+        assert_eq!(concerning("something else"), "something else");
     }
 
     #[test]

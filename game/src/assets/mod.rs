@@ -97,10 +97,23 @@ impl Assets {
     pub fn begin(&self, key: &str, progress: &(dyn Fn(f32, &str) + Sync)) -> Result<World, AssetErrors> {
         let start = self.start(key)?;
         let mut errors = AssetErrors::default();
-        let ship = errors.keep(self.ship(&start.ship));
-        let system = errors.keep(self.system(&start.system, progress));
+        let ship = errors.keep(self.named_by(key, "ship", &start.ship, &self.ships(), self.ship(&start.ship)));
+        let system = errors.keep(self.named_by(key, "system", &start.system, &self.systems(), self.system(&start.system, progress)));
         let (Some(ship), Some(system)) = (ship, system) else { return Err(errors) };
         self.world(key, &start, system, ship)
+    }
+
+    /// What came of a name in a start; where there is nothing of that name, it is told at the start's line.
+    fn named_by<T>(&self, start: &str, field: &str, name: &str, known: &[String], found: Result<T, AssetErrors>) -> Result<T, AssetErrors> {
+        if known.iter().any(|k| k == name) {
+            return found;
+        }
+        found.map_err(|errors| {
+            let Ok(tree) = start::start_tree(&self.overlay, start) else { return errors };
+            let at = tree.place_of(field);
+            let told = |fault: Fault| Fault { at: Some(at.clone()), path: at.source.path.clone(), ..fault };
+            AssetErrors { faults: errors.faults.into_iter().map(told).collect() }
+        })
     }
 
     /// A World from a start's words, when the system and the ship that they name are there already.
@@ -147,9 +160,11 @@ impl Assets {
             let system = match systems.get(&start.system) {
                 Some(system) => system.clone(),
                 // Names a system that there is none of: the fault is told by the attempt.
-                None => errors.keep(self.system(&start.system, &|_, _| ())),
+                None => errors.keep(self.named_by(&key, "system", &start.system, &self.systems(), self.system(&start.system, &|_, _| ()))),
             };
-            let ship = if self.ships().contains(&start.ship) { self.ship(&start.ship).ok() } else { errors.keep(self.ship(&start.ship)) };
+            let ship = self.named_by(&key, "ship", &start.ship, &self.ships(), self.ship(&start.ship));
+            // Faults of a ship that is there were told above.
+            let ship = if self.ships().contains(&start.ship) { ship.ok() } else { errors.keep(ship) };
             if let (Some(system), Some(ship)) = (system, ship) {
                 errors.keep(self.world(&key, &start, system, ship));
             }

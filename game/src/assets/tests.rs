@@ -310,6 +310,22 @@ fn a_folder_without_its_file_and_an_unknown_system_are_named() {
 }
 
 #[test]
+fn a_start_that_names_what_is_not_there_is_told_at_its_line() {
+    for (field, wrong, near) in [("ship", "troch", "torch"), ("system", "tt", "t")] {
+        let dir = assets();
+        let line = START.lines().position(|l| l.starts_with(&format!("{field} = "))).unwrap();
+        let text: Vec<String> =
+            START.lines().enumerate().map(|(i, l)| if i == line { format!("{field} = \"{wrong}\"") } else { l.to_owned() }).collect();
+        let file = put(dir.path(), START_FILE, text.join("\n").as_bytes());
+        let assets = Assets::new(dir.path().to_owned(), Vec::new());
+        let place = format!("{}:{}:", file.display(), line + 1);
+        for message in [assets.check().unwrap_err().text(), assets.begin("here", &|_, _| ()).map(drop).unwrap_err().text()] {
+            assert!(message.contains(&place) && message.contains(&format!("did you mean `{near}`?")), "{place} {message}");
+        }
+    }
+}
+
+#[test]
 fn a_map_that_is_missing_or_no_map_is_named() {
     let dir = assets();
     put(dir.path(), ROCK_FILE, ROCK.replace("water = false", "water = false\nmap = \"rock.cube\"").as_bytes());

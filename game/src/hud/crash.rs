@@ -1,7 +1,7 @@
 //! After a crash: how fast, the last seconds again, and where to go on from.
 
 use super::panels::{area, row};
-use super::{Hud, Reply, Request, Scene, Screen, format, style};
+use super::{Hud, Reply, Request, Scene, Screen, format, menu, style};
 use egui::{Align2, RichText, Slider};
 
 /// How far back the view looks.
@@ -39,7 +39,7 @@ pub fn show(ctx: &egui::Context, scene: &Scene<'_>, hud: &mut Hud, reply: &mut R
             row(ui, 430.0, "The gear bears", &format::speed(limit), style::TEXT);
             row(ui, 430.0, "Place", &format::place(r.lat_lon_rad.0, r.lat_lon_rad.1), style::TEXT);
             ui.horizontal(|ui| {
-                if ui.button("The last seconds").clicked() {
+                if menu::offered(ui.button("The last seconds")).clicked() {
                     *review = Review { back_s: LONGEST_S, playing: true };
                 }
                 if ui.add(Slider::new(&mut review.back_s, 0.0..=LONGEST_S).text("s before")).changed() {

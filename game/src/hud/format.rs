@@ -69,7 +69,15 @@ pub fn flux(w_m2: f64) -> String {
 
 /// Any number with some decimals.
 pub fn number(x: f64, decimals: usize) -> String {
-    if x.is_finite() { format!("{x:.decimals$}") } else { NONE.to_owned() }
+    if !x.is_finite() {
+        return NONE.to_owned();
+    }
+    let text = format!("{x:.decimals$}");
+    // What rounds to nought has no sign.
+    match text.strip_prefix('-') {
+        Some(rest) if rest.bytes().all(|b| matches!(b, b'0' | b'.')) => rest.to_owned(),
+        _ => text,
+    }
 }
 
 /// An angle in whole degrees, 000 … 359.
@@ -128,5 +136,6 @@ mod tests {
             ["¼×", "½×", "1×", "2×", "4×", "10×", "100×", "1,000×", "10,000×", "50,000×", "100,000×"]
         );
         assert_eq!(warp(99), NONE);
+        assert_eq!((number(-0.2, 0), number(-0.004, 2), number(-0.006, 2)), ("0".into(), "0.00".into(), "-0.01".into()));
     }
 }

@@ -33,7 +33,15 @@ fn backdrop(ctx: &egui::Context, alpha: u8) {
 
 fn choice(ui: &mut Ui, text: &str, enabled: bool) -> bool {
     let label = RichText::new(text).font(style::words(18.0));
-    ui.add_enabled(enabled, egui::Button::new(label).min_size(Vec2::new(260.0, 38.0))).clicked()
+    offered(ui.add_enabled(enabled, egui::Button::new(label).min_size(Vec2::new(260.0, 38.0)))).clicked()
+}
+
+/// Takes the focus where nothing has it: the first of a screen, so that arrows and Enter (or a pad) need no mouse to begin with.
+pub fn offered(response: egui::Response) -> egui::Response {
+    if response.enabled() && response.ctx.memory(|m| m.focused().is_none()) {
+        response.request_focus();
+    }
+    response
 }
 
 /// What goes on beside the menu.
@@ -92,7 +100,7 @@ pub fn page(ctx: &egui::Context, hud: &mut Hud, id: &str, title: &str, add: impl
             ui.add_space(8.0);
             ScrollArea::vertical().max_height(height.max(120.0)).auto_shrink([false, true]).show(ui, |ui| add(ui, hud));
             ui.add_space(10.0);
-            left = ui.button("Back").clicked();
+            left = offered(ui.button("Back")).clicked();
         });
     });
     left
@@ -107,7 +115,7 @@ pub fn starts(ctx: &egui::Context, hud: &mut Hud, lists: &Lists, reply: &mut Rep
         for start in &lists.starts {
             let button =
                 egui::Button::new(RichText::new(&start.name).font(style::words(16.0))).min_size(Vec2::new(ui.available_width(), 32.0));
-            if ui.add(button).clicked() {
+            if offered(ui.add(button)).clicked() {
                 reply.requests.push(Request::NewFlight(start.key.clone()));
             }
             ui.label(style::note(start.description.as_str()));
@@ -129,7 +137,7 @@ pub fn saves(ctx: &egui::Context, hud: &mut Hud, lists: &Lists, reply: &mut Repl
             let button =
                 egui::Button::new(RichText::new(&save.title).font(style::words(15.0))).min_size(Vec2::new(ui.available_width(), 28.0));
             // A damaged one can be asked for, too: its backup or the newest automatic one is loaded then, and said.
-            if ui.add(button).clicked() {
+            if offered(ui.add(button)).clicked() {
                 reply.requests.push(Request::Load(save.path.clone()));
             }
             ui.label(style::note(save.detail.as_str()));
@@ -157,7 +165,10 @@ pub fn pause(ctx: &egui::Context, hud: &mut Hud, reply: &mut Reply) {
                 hud.screen = Screen::Flight;
             }
             ui.horizontal(|ui| {
-                ui.add(egui::TextEdit::singleline(&mut hud.menu.name).desired_width(170.0).hint_text("name of the save"));
+                let field = ui.add(egui::TextEdit::singleline(&mut hud.menu.name).desired_width(170.0).hint_text("name of the save"));
+                // It would keep the arrows up and down, and a walk through the menu would end in it.
+                let filter = egui::EventFilter { horizontal_arrows: true, ..Default::default() };
+                ui.memory_mut(|m| m.set_focus_lock_filter(field.id, filter));
                 let named = !hud.menu.name.trim().is_empty();
                 if ui.add_enabled(named, egui::Button::new("Save")).clicked() {
                     reply.requests.push(Request::SaveAs(hud.menu.name.trim().to_owned()));
@@ -190,4 +201,44 @@ pub fn pause(ctx: &egui::Context, hud: &mut Hud, reply: &mut Reply) {
             }
         });
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Shows a menu for some frames, a key pressed in each; what was asked for in the end.
+    fn keys(hud: &mut Hud, pressed: &[egui::Key]) -> Reply {
+        let (ctx, lists, mut reply) = (egui::Context::default(), Lists::default(), Reply::default());
+        // Two frames to lay the menu out and to take the focus, one more for what the last key did.
+        for key in [None; 3].into_iter().chain(pressed.iter().copied().map(Some)).chain([None]) {
+            let event =
+                key.map(|key| egui::Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers: egui::Modifiers::NONE });
+            let screen_rect = Some(egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(1280.0, 720.0)));
+            let input = egui::RawInput { screen_rect, events: event.into_iter().collect(), ..Default::default() };
+            let output = ctx.run_ui(input, |ui| match hud.screen {
+                Screen::Pause => pause(ui.ctx(), hud, &mut reply),
+                _ => main(ui.ctx(), hud, &lists, &mut reply),
+            });
+            output.drop_without_applying_deltas();
+        }
+        reply
+    }
+
+    #[test]
+    fn a_menu_is_walked_with_arrows_and_enter_from_its_first_choice() {
+        use egui::Key::{ArrowDown, Enter};
+        let mut hud = Hud::default();
+        keys(&mut hud, &[Enter]);
+        assert_eq!(hud.screen, Screen::Starts, "without a save the first choice is a new flight");
+        let mut hud = Hud::default();
+        keys(&mut hud, &[ArrowDown, Enter]);
+        assert_eq!(hud.screen, Screen::Options);
+        let reply = keys(&mut Hud::default(), &[ArrowDown, ArrowDown, ArrowDown, Enter]);
+        assert_eq!(reply.requests, [Request::Quit]);
+        // Past the name of a save, too.
+        let mut hud = Hud { screen: Screen::Pause, ..Hud::default() };
+        let reply = keys(&mut hud, &[ArrowDown, ArrowDown, ArrowDown, Enter]);
+        assert_eq!(reply.requests, [Request::Quickload]);
+    }
 }

@@ -287,7 +287,7 @@ impl Hud {
             ui.add_space(6.0);
             ui.label(egui::RichText::new(text).font(style::mono(13.0)));
             ui.add_space(10.0);
-            ui.button("Close").clicked()
+            menu::offered(ui.button("Close")).clicked()
         });
         if modal.inner || modal.should_close() {
             self.message = None;

@@ -32,7 +32,7 @@ pub fn show(ctx: &egui::Context, hud: &mut Hud, settings: &mut Settings, input: 
     let left = menu::page(ctx, hud, "options", "Settings", |ui, hud| {
         ui.horizontal(|ui| {
             for (page, name) in [(Page::Video, "Picture"), (Page::Sound, "Sound"), (Page::Controls, "Controls")] {
-                if style::toggle(ui, hud.options.page == page, name).clicked() {
+                if menu::offered(style::toggle(ui, hud.options.page == page, name)).clicked() {
                     hud.options.page = page;
                     hud.options.waiting = None;
                     input.set_focus(Focus::Menu);

@@ -91,7 +91,8 @@ pub fn apply(ctx: &egui::Context) {
         for (state, fill, line, text) in [
             (&mut w.noninteractive, Color32::from_rgb(12, 15, 20), LINE, TEXT),
             (&mut w.inactive, Color32::from_rgb(27, 32, 39), Color32::from_rgb(44, 51, 60), TEXT),
-            (&mut w.hovered, Color32::from_rgb(40, 47, 56), ACCENT, Color32::WHITE),
+            // Not the accent: that is on what the keyboard stands on.
+            (&mut w.hovered, Color32::from_rgb(40, 47, 56), Color32::from_rgb(112, 100, 76), Color32::WHITE),
             (&mut w.active, Color32::from_rgb(56, 64, 74), ACCENT, Color32::WHITE),
             (&mut w.open, Color32::from_rgb(33, 39, 47), LINE, TEXT),
         ] {

@@ -12,7 +12,7 @@ use crate::command::{Action, Axes, Commands, Guidance, Hold, WARP_ONE, WARP_QUAR
 use crate::world::readout::Readout;
 use bindings::{Bindings, Source};
 use controls::{Analogue, Control, Group};
-use pads::{PadEvent, Pads};
+use pads::{PadButton, PadEvent, Pads};
 use winit::keyboard::KeyCode;
 
 /// Full throttle is this many steps of a lever that the keys move in one second.
@@ -52,6 +52,22 @@ pub struct Input {
     lever_sent: u16,
     notices: Vec<String>,
     caught: Option<Source>,
+    steps: Vec<Step>,
+}
+
+/// A pad's step through a menu.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Step {
+    /// Towards a neighbour.
+    Up,
+    /// Towards a neighbour.
+    Down,
+    /// Towards a neighbour, or less of something.
+    Left,
+    /// Towards a neighbour, or more of something.
+    Right,
+    /// Take it.
+    Take,
 }
 
 impl Input {
@@ -76,6 +92,7 @@ impl Input {
             lever_sent: 0,
             notices,
             caught: None,
+            steps: Vec::new(),
         }
     }
 
@@ -146,6 +163,11 @@ impl Input {
         self.caught.take()
     }
 
+    /// What pads pressed in menus since the last call. Fixed: what is bound is heard in flight only.
+    pub fn take_steps(&mut self) -> Vec<Step> {
+        std::mem::take(&mut self.steps)
+    }
+
     /// Controls of the view and the game (camera, map, pause, saves …) pressed since the last call.
     pub fn take_view_controls(&mut self) -> Vec<Control> {
         let is_view = |c: &Control| matches!(c.group(), Group::View | Group::Game);
@@ -214,6 +236,17 @@ impl Input {
     }
 
     fn press(&mut self, source: Source) {
+        if let (Focus::Menu | Focus::Text, Source::Pad(button)) = (self.focus, source) {
+            match button {
+                PadButton::DPadUp => self.steps.push(Step::Up),
+                PadButton::DPadDown => self.steps.push(Step::Down),
+                PadButton::DPadLeft => self.steps.push(Step::Left),
+                PadButton::DPadRight => self.steps.push(Step::Right),
+                PadButton::South => self.steps.push(Step::Take),
+                PadButton::East if self.focus == Focus::Menu => return self.queued.push(Control::Pause),
+                _ => {}
+            }
+        }
         if self.focus == Focus::Text {
             self.caught = Some(source);
             return;
@@ -435,6 +468,10 @@ mod tests {
         input.poll_pads();
         assert_eq!(input.sample(0.5, &ship).axes.pitch, 0);
         assert_eq!(input.take_notices().len(), 1 + usize::from(input.pads.notice.is_some()));
+        input.set_focus(Focus::Menu);
+        input.pads.insert(event(8, Hand::Press(PadButton::DPadDown)).unwrap());
+        input.poll_pads();
+        assert_eq!(input.take_steps(), [Step::Down]);
     }
 
     #[test]

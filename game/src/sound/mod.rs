@@ -39,7 +39,7 @@ impl Default for Volumes {
 
 /// Why there is no sound; to be shown as a small notice.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("no sound: {0}; the game goes on without")]
+#[error("No sound: {}; the game goes on without", .0.trim_end_matches('.'))]
 pub struct Notice(pub String);
 
 /// The game's sound.

@@ -138,6 +138,24 @@ fn a_hundred_revolutions_keep_their_energy_and_their_bits_at_every_warp() {
 }
 
 #[test]
+fn twenty_minutes_of_coasting_end_in_the_same_bits_at_each_of_the_warp_levels() {
+    let end = START.ticks + 20 * 60 * 60;
+    let finals = (0..WARP_QUARTERS.len()).map(|level| {
+        let mut world = orbiting(&earth(), 400e3, 0.9, 1.0);
+        world.warp_asked = u8::try_from(level).unwrap();
+        while world.time.ticks < end {
+            while i64::from(WARP_QUARTERS[usize::from(world.warp_asked)] / 4) > end - world.time.ticks {
+                world.warp_asked -= 1;
+            }
+            idle(&mut world, 1);
+        }
+        (world.time.ticks, bits(&world))
+    });
+    let finals: Vec<_> = finals.collect();
+    assert!(finals.iter().all(|f| *f == finals[0] && f.0 == end), "same bits from ¼× to 100,000×");
+}
+
+#[test]
 fn warp_falls_before_the_air_is_reached() {
     let mut entries = Vec::new();
     for level in [4, 6, 8, 10] {

@@ -15,7 +15,7 @@ use crate::cli::{Backend, DEFAULT_START};
 use crate::command::Action;
 use crate::hud::{Hud, Lists, Screen};
 use crate::input::controls::{Analogue, Control};
-use crate::input::{Focus, Input};
+use crate::input::{Focus, Input, Step};
 use crate::mode::open::{self, Start};
 use crate::save::Slots;
 use crate::settings::Settings;
@@ -31,7 +31,7 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::Instant;
 use winit::application::ApplicationHandler;
-use winit::dpi::PhysicalSize;
+use winit::dpi::{LogicalSize, PhysicalSize, Size};
 use winit::event::{ElementState, MouseButton, MouseScrollDelta, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow};
 use winit::keyboard::PhysicalKey;
@@ -56,6 +56,7 @@ pub struct App {
     settings: Settings,
     slots: Slots,
     lists: Lists,
+    entered: Screen,
     input: Input,
     hud: Hud,
     sound: Option<Sound>,
@@ -101,6 +102,7 @@ impl App {
         Self {
             exit: ExitCode::SUCCESS,
             lists: flight::lists(&opening.assets, &slots),
+            entered: Screen::Main,
             input: Input::new(settings.controls.clone()),
             straight_in: opening.args.start.is_some(),
             opening,
@@ -184,6 +186,13 @@ impl App {
         self.hear_eclipses();
         self.hud.paths_ahead = self.ahead.as_mut().and_then(Ahead::poll);
         self.set_focus();
+        self.step_through_menus();
+        // Quick and automatic saves were written since.
+        if self.hud.screen != std::mem::replace(&mut self.entered, self.hud.screen)
+            && matches!(self.hud.screen, Screen::Saves | Screen::Main)
+        {
+            self.lists = flight::lists(&self.opening.assets, &self.slots);
+        }
         for control in self.input.take_view_controls() {
             self.control(control);
         }
@@ -234,7 +243,7 @@ impl App {
     }
 
     fn set_focus(&mut self) {
-        let typing = self.canvas.as_ref().is_some_and(|c| c.ctx.egui_wants_keyboard_input());
+        let typing = self.canvas.as_ref().is_some_and(|c| c.ctx.text_edit_focused());
         let focus = if self.hud.options.waiting.is_some() || typing {
             Focus::Text
         } else if self.hud.screen.runs() && !self.hud.help && self.hud.message.is_none() {
@@ -245,7 +254,28 @@ impl App {
         } else {
             Focus::Menu
         };
+        if let (Focus::Flight | Focus::Camera, Some(canvas)) = (focus, &self.canvas) {
+            // Tab or an arrow must not wander through the panels in flight: Enter would press what it stands on.
+            canvas.ctx.memory_mut(|m| m.focused().map(|id| m.surrender_focus(id)));
+        }
         self.input.set_focus(focus);
+    }
+
+    /// A pad's way through menus: what the arrows and Enter do on a keyboard.
+    fn step_through_menus(&mut self) {
+        for step in self.input.take_steps() {
+            let key = match step {
+                Step::Up => egui::Key::ArrowUp,
+                Step::Down => egui::Key::ArrowDown,
+                Step::Left => egui::Key::ArrowLeft,
+                Step::Right => egui::Key::ArrowRight,
+                Step::Take => egui::Key::Enter,
+            };
+            // While a control is bound, the press is the binding's.
+            if let (Some(canvas), None) = (&mut self.canvas, &self.hud.options.waiting) {
+                canvas.press(key);
+            }
+        }
     }
 
     fn tick(&mut self, dt_s: f64) {
@@ -377,8 +407,9 @@ impl ApplicationHandler for App {
         if self.canvas.is_some() {
             return;
         }
-        let (width, height) = self.opening.args.size.unwrap_or((1280, 720));
-        let attributes = Window::default_attributes().with_title("Syzygy").with_inner_size(PhysicalSize::new(width, height));
+        // A size that is asked for is in pixels, as pictures are; otherwise the window is as large on every display.
+        let size = self.opening.args.size.map_or(Size::from(LogicalSize::new(1280, 720)), |(w, h)| PhysicalSize::new(w, h).into());
+        let attributes = Window::default_attributes().with_title("Syzygy").with_inner_size(size);
         let window = match event_loop.create_window(attributes) {
             Ok(window) => Arc::new(window),
             Err(e) => return self.end(event_loop, &format!("no window can be opened: {e}")),
@@ -414,6 +445,12 @@ impl ApplicationHandler for App {
             }
             WindowEvent::Resized(size) => {
                 if let Some(canvas) = &mut self.canvas {
+                    canvas.resize(size.width, size.height);
+                }
+            }
+            WindowEvent::ScaleFactorChanged { .. } => {
+                if let Some(canvas) = &mut self.canvas {
+                    let size = canvas.window.inner_size();
                     canvas.resize(size.width, size.height);
                 }
             }

@@ -21,6 +21,18 @@ pub struct Canvas {
     config: wgpu::SurfaceConfiguration,
     events: egui_winit::State,
     scaled: Option<(OffscreenImage, egui::TextureId)>,
+    pressed: Vec<egui::Key>,
+    ui_scale: f32,
+}
+
+/// Points that panels and menus need side by side and one above the other; in a smaller window all of them shrink.
+const LEAST_POINTS: [f32; 2] = [1000.0, 700.0];
+
+/// Zoom of the HUD: the player's, less where a window of so many pixels at so many pixels a point is too small for the panels.
+fn zoom(size_px: [u32; 2], native: f32, ui_scale: f32) -> f32 {
+    let points = size_px.map(|n| n as f32 / native);
+    let fits = (points[0] / LEAST_POINTS[0]).min(points[1] / LEAST_POINTS[1]);
+    ui_scale * fits.clamp(0.25, 1.0)
 }
 
 /// egui's painter.
@@ -53,13 +65,15 @@ impl Canvas {
         surface.configure(&gpu.device, &config);
         let ctx = egui::Context::default();
         crate::hud::style::apply(&ctx);
-        ctx.set_zoom_factor(video.ui_scale);
         let most = usize::try_from(gpu.device.limits().max_texture_dimension_2d).ok();
         let native = engine::space::relative::narrow(window.scale_factor());
         let events = egui_winit::State::new(ctx.clone(), egui::ViewportId::ROOT, &window, Some(native), window.theme(), most);
         let renderer = egui_wgpu::Renderer::new(&gpu.device, config.format, egui_wgpu::RendererOptions::default());
         let painter = Painter { renderer, jobs: Vec::new(), leaving: Vec::new(), pixels_per_point: native, alone: true };
-        Ok(Self { window, gpu: Arc::new(gpu), ctx, painter, surface, config, events, scaled: None })
+        let (gpu, ui_scale) = (Arc::new(gpu), video.ui_scale);
+        let canvas = Self { window, gpu, ctx, painter, surface, config, events, scaled: None, pressed: Vec::new(), ui_scale };
+        canvas.set_zoom();
+        Ok(canvas)
     }
 
     /// Size of the picture, pixels.
@@ -76,12 +90,23 @@ impl Canvas {
         self.events.on_window_event(&self.window, event).consumed
     }
 
+    /// Presses a key for egui, as if on a keyboard: a pad's way through menus.
+    pub fn press(&mut self, key: egui::Key) {
+        self.pressed.push(key);
+    }
+
     /// The window has another size; nothing happens while it is minimised.
     pub fn resize(&mut self, width: u32, height: u32) {
         if width > 0 && height > 0 && [width, height] != self.size() {
             (self.config.width, self.config.height) = self.fit(width, height);
             self.surface.configure(&self.gpu.device, &self.config);
         }
+        self.set_zoom();
+    }
+
+    fn set_zoom(&self) {
+        let native = engine::space::relative::narrow(self.window.scale_factor()).max(0.1);
+        self.ctx.set_zoom_factor(zoom(self.size(), native, self.ui_scale));
     }
 
     fn fit(&self, width: u32, height: u32) -> (u32, u32) {
@@ -91,7 +116,8 @@ impl Canvas {
 
     /// Puts settings in force.
     pub fn apply(&mut self, video: &Video) {
-        self.ctx.set_zoom_factor(video.ui_scale);
+        self.ui_scale = video.ui_scale;
+        self.set_zoom();
         let mode = present_mode(video.vsync);
         if self.config.present_mode != mode {
             self.config.present_mode = mode;
@@ -126,7 +152,13 @@ impl Canvas {
 
     /// Runs the HUD for a frame and takes over what it painted.
     pub fn paint(&mut self, mut show: impl FnMut(&egui::Context)) {
-        let input = self.events.take_egui_input(&self.window);
+        let mut input = self.events.take_egui_input(&self.window);
+        for key in self.pressed.drain(..) {
+            for pressed in [true, false] {
+                let modifiers = egui::Modifiers::NONE;
+                input.events.push(egui::Event::Key { key, physical_key: None, pressed, repeat: false, modifiers });
+            }
+        }
         let mut output = self.ctx.run_ui(input, |ui| show(ui.ctx()));
         self.events.handle_platform_output(&self.window, std::mem::take(&mut output.platform_output));
         let set = std::mem::take(&mut output.textures_delta.set);
@@ -232,4 +264,23 @@ fn configuration(gpu: &Gpu, surface: &wgpu::Surface<'_>, size: [u32; 2], vsync: 
         config.desired_maximum_frame_latency = 1;
     }
     config
+}
+
+#[cfg(test)]
+mod tests {
+    use super::zoom;
+
+    #[test]
+    fn the_hud_fits_small_windows_and_keeps_the_player_s_size_in_large_ones() {
+        for (size_px, native, ui_scale, expected) in [
+            ([1280, 720], 1.0, 1.0, 1.0),
+            ([2560, 1440], 2.0, 1.25, 1.25),
+            ([1280, 720], 2.0, 1.0, 360.0 / 700.0),
+            ([800, 1200], 1.0, 1.0, 0.8),
+            ([1, 1], 1.0, 1.0, 0.25),
+        ] {
+            let found = zoom(size_px, native, ui_scale);
+            assert!((found - expected).abs() < 1e-6, "{size_px:?} at {native}: {found}, expected {expected}");
+        }
+    }
 }

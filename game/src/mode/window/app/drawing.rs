@@ -67,7 +67,9 @@ impl App {
         let scaled = canvas.scaled(self.settings.video.render_scale);
         let size_px = scaled.as_ref().map_or_else(|| canvas.size(), |(image, _)| image.size);
         let alpha = if self.hud.screen.runs() { self.clock.alpha() } else { 0.0 };
-        let picture = Picture { size_px, alpha, adapt_s: Some(bounded(dt_s)), force: Force::default() };
+        // The first picture of a flight is a whole one, its ground and its exposure: a sea would else stand for land that is still on its way.
+        let adapt_s = self.still.taken.is_some().then(|| bounded(dt_s));
+        let picture = Picture { size_px, alpha, adapt_s, force: Force::default() };
         let held = scaled.is_some() && !covered && self.still.holds(self.hud.screen, &rig, size_px, world);
         let scene = (!covered && !held).then(|| snapshot(world, &rig, &picture).0);
 
