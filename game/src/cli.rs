@@ -233,9 +233,7 @@ pub enum Probe {
     #[command(after_help = "Example:\n  syzygy probe ephemeris --body moon --center earth --tdb 2461265.241041667")]
     Ephemeris(ProbeEphemerisArgs),
     /// A case of orbital motion by any integrator: where it ends, the energy's error, the cost
-    #[command(
-        after_help = "Example:\n  syzygy probe propagate --case tests/reference/orbit_cases.json --name LEO_1000orb --method gauss_radau --tol 1e-9"
-    )]
+    #[command(after_help = "Example:\n  syzygy probe propagate --case orbit_cases.json --name LEO_1000orb --method taylor")]
     Propagate(ProbePropagateArgs),
     /// Eclipses on a body by another: when, what kind, where, and what one place sees
     #[command(after_help = "Example:\n  syzygy probe eclipses --on earth --by moon --from 2461000 --to 2461500 --at 43.37,-8.40\n  \
