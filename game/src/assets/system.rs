@@ -250,6 +250,15 @@ fn no_ephemeris(error: &EphemerisError, specs: &[BodySpec], masses: &[(String, M
             ),
         ),
         EphemerisError::Value { body, what } => (*body, format!("{}: {what}", name(*body))),
+        EphemerisError::Pace { body, given_m, kepler_m } => (
+            *body,
+            format!(
+                "{}: `semi_major_axis_km` = {}: expected {:.1}, which `mean_longitude_deg_per_day` and the parent's `gm_km3_s2` give",
+                name(*body),
+                given_m / KM,
+                kepler_m / KM
+            ),
+        ),
         other => (0, other.to_string()),
     };
     match specs.get(body).or(specs.first()) {

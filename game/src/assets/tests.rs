@@ -92,7 +92,7 @@ meridian_deg_per_day = 30.0
 [orbit]
 kind = "mean"
 epoch_jd_tdb = 2451545.0
-semi_major_axis_km = 200000.0
+semi_major_axis_km = 221700.0
 eccentricity = 0.02
 inclination_deg = 1.0
 node_deg = 10.0
@@ -213,6 +213,8 @@ malformed! {
     nan_is_refused: ROCK_FILE, "radius_km = 6000.0" => "radius_km = nan", line 4, ["out of range"];
     infinity_is_refused: ROCK_FILE, "gm_km3_s2 = 4.0e5" => "gm_km3_s2 = inf", line 3, ["`gm_km3_s2` = inf"];
     negative_gm: MOON_FILE, "gm_km3_s2 = 100.0" => "gm_km3_s2 = -100.0", line 3, ["-100", "above 0"];
+    a_size_that_its_motion_does_not_have: MOON_FILE, "semi_major_axis_km = 221700.0" => "semi_major_axis_km = 200000.0", line 1,
+        ["Moon: `semi_major_axis_km` = 200000", "expected 221683", "mean_longitude_deg_per_day"];
     zero_radius: MOON_FILE, "radius_km = 500.0" => "radius_km = 0", line 4, ["from 0.1"];
     text_for_a_number: MOON_FILE, "radius_km = 500.0" => "radius_km = \"500 km\"", line 4, ["found a string"];
     number_for_text: MOON_FILE, "name = \"Moon\"" => "name = 5", line 1, ["expected a string, found a number"];
@@ -344,7 +346,9 @@ fn mods_add_replace_and_modify() {
     let dir = assets();
     let base = load_system(dir.path(), &[], "t").unwrap();
     let one = tempfile::tempdir().unwrap();
-    put(one.path(), "systems/t/moonlet/body.toml", MOON.replace("Moon", "Moonlet").replace("200000.0", "90000.0").as_bytes());
+    let moonlet =
+        MOON.replace("Moon", "Moonlet").replace("221700.0", "90000.0").replace("deg_per_day = 30.0\nplane", "deg_per_day = 115.97\nplane");
+    put(one.path(), "systems/t/moonlet/body.toml", moonlet.as_bytes());
     put(one.path(), "systems/t/rock/body.patch.toml", b"radius_km = 7000.0\n[relief.noise]\nseed = 8\n");
     let two = tempfile::tempdir().unwrap();
     put(two.path(), "systems/t/moon/body.toml", MOON.replace("radius_km = 500.0", "radius_km = 600.0").as_bytes());

@@ -233,8 +233,11 @@ mod tests {
         assert_eq!(hud.screen, Screen::Starts, "without a save the first choice is a new flight");
         let mut hud = Hud::default();
         keys(&mut hud, &[ArrowDown, Enter]);
+        assert_eq!(hud.screen, Screen::Calendar);
+        let mut hud = Hud::default();
+        keys(&mut hud, &[ArrowDown, ArrowDown, Enter]);
         assert_eq!(hud.screen, Screen::Options);
-        let reply = keys(&mut Hud::default(), &[ArrowDown, ArrowDown, ArrowDown, Enter]);
+        let reply = keys(&mut Hud::default(), &[ArrowDown, ArrowDown, ArrowDown, ArrowDown, Enter]);
         assert_eq!(reply.requests, [Request::Quit]);
         // Past the name of a save, too.
         let mut hud = Hud { screen: Screen::Pause, ..Hud::default() };

@@ -116,6 +116,16 @@ pub enum EphemerisError {
     /// Two bodies stand at one place, where their attraction has no value.
     #[error("bodies {0} and {1} are at the same place: their attraction has no value there")]
     Same(usize, usize),
+    /// Mean elements whose size and motion belong to different masses.
+    #[error("body {body}: its mean motion belongs to a semi-major axis of {kepler_m:e} m, not {given_m:e} m")]
+    Pace {
+        /// Which body.
+        body: usize,
+        /// The semi-major axis as given.
+        given_m: f64,
+        /// The one that the mean motion and the parent's gravity give.
+        kepler_m: f64,
+    },
 }
 
 /// Checks what can be checked body by body. Masses count on from the bodies.

@@ -297,6 +297,11 @@ fn what_is_no_system_is_refused() {
     assert_eq!(with(1, |o| o.parent = Some(BodyId(2))), EphemerisError::Order(1));
     assert!(matches!(with(2, |o| o.gm_m3_s2 = f64::NAN), EphemerisError::Value { body: 2, .. }));
     assert!(matches!(with(3, |o| o.gm_m3_s2 = -1.0), EphemerisError::Value { body: 3, .. }));
+    let hasty = with(4, |o| {
+        let Path::Mean(mean) = &mut o.path else { return };
+        mean.mean_longitude_rate_rad_s *= 2.0;
+    });
+    assert!(matches!(hasty, EphemerisError::Pace { body: 4, kepler_m, .. } if (6.6e8..6.9e8).contains(&kepler_m)), "{hasty:?}");
     let mut twins = good.clone();
     twins[3].path = twins[1].path.clone();
     assert_eq!(Ephemeris::new(twins).unwrap_err(), EphemerisError::Same(1, 3));

@@ -23,6 +23,9 @@ use glam::DVec3;
 /// A moon joins the planetary level where the quadrupole of the pair, (m/M)(a/d)², is more than this part of a point's gravity:
 /// 1e-9 moves a planet by a few kilometres in a revolution. The Moon's is 8e-8, Callisto's 3e-10.
 const HEAVY: f64 = 1e-9;
+/// How far, as a part, the size that mean elements give may lie from the one that their motion gives: published sizes are rounded,
+/// and siblings pull.
+const PACE: f64 = 0.02;
 
 /// Position and velocity.
 pub type Pair = (DVec3, DVec3);
@@ -88,6 +91,7 @@ impl Tree {
             start: Vec::new(),
             steps: Vec::new(),
         };
+        tree.paced(orbits, details)?;
         tree.start = tree.starts(orbits, details);
         tree.choose();
         tree.steps = (0..n).map(|i| tree.step(i)).collect();
@@ -101,6 +105,19 @@ impl Tree {
             let of_child = add(centre[c], self.family_offset(c, centre), 1.0);
             add(sum, of_child, self.family_gm[c] / self.family_gm[body])
         })
+    }
+
+    /// Refuses mean elements whose size and motion do not belong together.
+    fn paced(&self, orbits: &[Orbit], details: &Details) -> Result<(), EphemerisError> {
+        for (body, orbit) in orbits.iter().enumerate() {
+            let (Path::Mean(mean), Some(p)) = (&orbit.path, self.parent[body]) else { continue };
+            let figure = details.figures.get(p).and_then(Option::as_ref);
+            let kepler_m = mean::semi_major_m(mean, self.gm[body] + self.gm[p], figure);
+            if !((kepler_m / mean.semi_major_m - 1.0).abs() < PACE) {
+                return Err(EphemerisError::Pace { body, given_m: mean.semi_major_m, kepler_m });
+            }
+        }
+        Ok(())
     }
 
     /// Where each body's centre starts, from its parent's.
