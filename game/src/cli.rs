@@ -6,7 +6,7 @@
 mod bench;
 mod eclipses;
 
-pub use bench::{BenchOrbitArgs, BenchShipsArgs};
+pub use bench::{BenchKeplerArgs, BenchOrbitArgs, BenchShipsArgs};
 pub use eclipses::ProbeEclipsesArgs;
 
 use clap::{Args, Parser, Subcommand};
@@ -250,6 +250,9 @@ pub enum Bench {
     /// What choosing the terms of gravity by an error bound costs in error and saves in time
     #[command(after_help = "Example:\n  syzygy bench ships --json ships.json")]
     Ships(BenchShipsArgs),
+    /// Nanoseconds for a solve of Kepler's problem, by regime: one at a time, on a known orbit, in batches
+    #[command(after_help = "Example:\n  syzygy bench kepler --json kepler.json")]
+    Kepler(BenchKeplerArgs),
 }
 
 /// Arguments that all probes share.
@@ -273,7 +276,7 @@ pub struct ProbeAirArgs {
     #[arg(long, value_name = "B")]
     pub body: String,
     /// Geometric altitudes above the datum, m
-    #[arg(long, value_name = "A", num_args = 1.., required = true, allow_hyphen_values = true, value_parser = finite)]
+    #[arg(long, value_name = "A", num_args = 1.., required = true, allow_negative_numbers = true, value_parser = finite)]
     pub altitude_m: Vec<f64>,
     #[command(flatten)]
     /// What all probes share.
@@ -318,7 +321,7 @@ pub struct ProbeEphemerisArgs {
     #[arg(long, value_name = "C")]
     pub center: Option<String>,
     /// Julian dates of TDB
-    #[arg(long, value_name = "JD", num_args = 1.., required = true, allow_hyphen_values = true, value_parser = julian_date)]
+    #[arg(long, value_name = "JD", num_args = 1.., required = true, allow_negative_numbers = true, value_parser = julian_date)]
     pub tdb: Vec<f64>,
     #[command(flatten)]
     /// What all probes share.

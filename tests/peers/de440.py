@@ -33,7 +33,7 @@ def body(key):
 
 
 def probe(program, key, center, dates):
-    words = [program, "probe", "ephemeris", "--body", key, "--center", center, "--tdb", *map(repr, dates), "--assets", str(ROOT / "assets")]
+    words = [program, "probe", "ephemeris", "--assets", str(ROOT / "assets"), "--body", key, "--center", center, "--tdb", *map(repr, dates)]
     rows = json.loads(subprocess.run(words, check=True, capture_output=True, text=True).stdout)
     return numpy.array([row["position_m"] for row in rows]) / 1e3
 

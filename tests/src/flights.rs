@@ -183,7 +183,7 @@ fn orbit_to_surface(pilot: &mut Pilot) {
 /// From the ground at Cape Canaveral to an orbit.
 fn takeoff_to_orbit(pilot: &mut Pilot) {
     pilot.ticks(60);
-    pilot.climb_to_orbit(300e3, 150e3);
+    pilot.climb_to_orbit(300e3, 205e3);
 }
 
 /// From a 100 km orbit of the Moon to Tranquility Base.

@@ -33,6 +33,17 @@ pub struct BenchOrbitArgs {
     pub places: Places,
 }
 
+/// Arguments of `bench kepler`.
+#[derive(Clone, Debug, Args)]
+pub struct BenchKeplerArgs {
+    /// Write the rows here instead of stdout
+    #[arg(long, value_name = "F.json")]
+    pub json: Option<PathBuf>,
+    #[command(flatten)]
+    /// Folders.
+    pub places: Places,
+}
+
 /// Arguments of `bench ships`.
 #[derive(Clone, Debug, Args)]
 pub struct BenchShipsArgs {

@@ -183,6 +183,7 @@ fn places_of(mode: &Mode) -> &Places {
         Mode::Probe(Probe::Propagate(a)) => &a.common.places,
         Mode::Bench(Bench::Orbit(a)) => &a.places,
         Mode::Bench(Bench::Ships(a)) => &a.places,
+        Mode::Bench(Bench::Kepler(a)) => &a.places,
     }
 }
 

@@ -113,7 +113,8 @@ impl Tree {
             let (Path::Mean(mean), Some(p)) = (&orbit.path, self.parent[body]) else { continue };
             let figure = details.figures.get(p).and_then(Option::as_ref);
             let kepler_m = mean::semi_major_m(mean, self.gm[body] + self.gm[p], figure);
-            if !((kepler_m / mean.semi_major_m - 1.0).abs() < PACE) {
+            let off = (kepler_m / mean.semi_major_m - 1.0).abs();
+            if off.is_nan() || off > PACE {
                 return Err(EphemerisError::Pace { body, given_m: mean.semi_major_m, kepler_m });
             }
         }

@@ -20,5 +20,6 @@ pub fn run(bench: &Bench) -> Result<(), Error> {
     match bench {
         Bench::Orbit(args) => orbit::run(args),
         Bench::Ships(args) => ships::run(args),
+        Bench::Kepler(args) => Ok(orbit_rows::write(&kepler::rows(), args.json.as_deref())?),
     }
 }
