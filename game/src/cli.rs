@@ -6,7 +6,7 @@
 mod bench;
 mod eclipses;
 
-pub use bench::{BenchKeplerArgs, BenchOrbitArgs, BenchShipsArgs};
+pub use bench::{BenchEphemerisArgs, BenchKeplerArgs, BenchOrbitArgs, BenchShipsArgs};
 pub use eclipses::ProbeEclipsesArgs;
 
 use clap::{Args, Parser, Subcommand};
@@ -253,6 +253,9 @@ pub enum Bench {
     /// Nanoseconds for a solve of Kepler's problem, by regime: one at a time, on a known orbit, in batches
     #[command(after_help = "Example:\n  syzygy bench kepler --json kepler.json")]
     Kepler(BenchKeplerArgs),
+    /// What the places of the bodies cost: a question, the first year, 1900 to 2100
+    #[command(after_help = "Example:\n  syzygy bench ephemeris --json ephemeris.json")]
+    Ephemeris(BenchEphemerisArgs),
 }
 
 /// Arguments that all probes share.

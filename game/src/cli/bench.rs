@@ -33,6 +33,20 @@ pub struct BenchOrbitArgs {
     pub places: Places,
 }
 
+/// Arguments of `bench ephemeris`.
+#[derive(Clone, Debug, Args)]
+pub struct BenchEphemerisArgs {
+    /// Write the rows here instead of stdout
+    #[arg(long, value_name = "F.json")]
+    pub json: Option<PathBuf>,
+    /// The system, a folder of assets/systems
+    #[arg(long, value_name = "NAME", default_value = "sol")]
+    pub system: String,
+    #[command(flatten)]
+    /// Folders.
+    pub places: Places,
+}
+
 /// Arguments of `bench kepler`.
 #[derive(Clone, Debug, Args)]
 pub struct BenchKeplerArgs {

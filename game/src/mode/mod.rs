@@ -184,6 +184,7 @@ fn places_of(mode: &Mode) -> &Places {
         Mode::Bench(Bench::Orbit(a)) => &a.places,
         Mode::Bench(Bench::Ships(a)) => &a.places,
         Mode::Bench(Bench::Kepler(a)) => &a.places,
+        Mode::Bench(Bench::Ephemeris(a)) => &a.places,
     }
 }
 
