@@ -24,8 +24,8 @@ impl Ephemeris {
         self.system.as_deref().is_none_or(|system| tasks(system, from, to).iter().all(|task| done(system, task)))
     }
 
-    /// Integrates everything from `from` to `to` on as many threads as there are processors, the planets first; `progress` hears how much
-    /// is done, 0 … 1. False where `cancel` was set before the end. Whoever asks meanwhile gets the same bits as without it.
+    /// Integrates everything from `from` to `to`, the planets first, on all processors but one, which is left to the picture; `progress`
+    /// hears how much is done, 0 … 1. False where `cancel` was set before the end. Whoever asks meanwhile gets the same bits as without it.
     pub fn prepare(&self, from: SimTime, to: SimTime, progress: &(dyn Fn(f64) + Sync), cancel: &AtomicBool) -> bool {
         let Some(system) = self.system.as_deref() else { return true };
         let tasks = tasks(system, from, to);
@@ -36,7 +36,7 @@ impl Ephemeris {
             *done += cost / total;
             progress(f64::min(*done, 1.0));
         };
-        let threads = std::thread::available_parallelism().map_or(1, |n| n.get()).min(tasks.len());
+        let threads = std::thread::available_parallelism().map_or(1, |n| n.get().saturating_sub(1).max(1)).min(tasks.len());
         std::thread::scope(|scope| {
             for _ in 0..threads {
                 scope.spawn(|| {
