@@ -303,7 +303,9 @@ mod tests {
                 assert!(all.contains(word), "{frame:?}: `{word}` is not in {all}");
             }
             if frame == Frame::Patched {
-                assert!(all.contains("AN") && all.contains("Burn 2"), "{all}");
+                for flag in ["AN\nin", "DN\nin", "Ap ", "Burn 2"] {
+                    assert!(all.contains(flag), "`{flag}` is not in {all}");
+                }
             }
         }
         // A frame about a body that there is not falls back.

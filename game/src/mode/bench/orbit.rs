@@ -46,7 +46,8 @@ pub fn run(args: &BenchOrbitArgs) -> Result<(), Error> {
             bar.inc(1);
         }
         if let Some(folder) = &args.plot {
-            let theirs: Vec<Row> = peers.iter().filter(|r| r.case == case.name).cloned().collect();
+            // Our own rows may lie among them, as measured in the same run.
+            let theirs: Vec<Row> = peers.iter().filter(|r| r.case == case.name && Method::find(&r.method).is_err()).cloned().collect();
             orbit_plot::draw(folder, case, &own, &theirs, &orbit_rows::anchors(&case.name))?;
         }
         rows.extend(own);
