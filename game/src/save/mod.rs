@@ -62,7 +62,7 @@ pub fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> String {
 pub enum SaveError {
     /// The file cannot be read or written.
     #[error("{}: cannot {action}: {source}", path.display())]
-    #[diagnostic(code(save::io), help("the file that was there before, if any, is intact"))]
+    #[diagnostic(code(save::io), help("check the path and its rights; whatever was there before is as it was"))]
     Io {
         /// The file or folder.
         path: PathBuf,
