@@ -7,7 +7,7 @@ use crate::air::Air;
 use crate::gpu::{Gpu, ShaderLibrary, readback};
 use crate::render::RenderError;
 use crate::render::pipeline::{compute_pipeline, uniform_entry};
-use crate::render::shared::{Shared, ShadowMap};
+use crate::render::shared::{ShadowMap, Shared};
 use crate::scene::gpu_data::{BodiesUniform, BodyUniform, FrameUniform, MAX_OCCLUDERS, SKY_SINGLE, SkyUniform, vec4};
 use crate::scene::{Body, Occluder, Surface};
 use crate::space::relative::narrow;

@@ -1,7 +1,7 @@
 //! Which airs are drawn, over which part of the picture, and why the others are not. No GPU here.
 
-use crate::air::Air;
 use super::model_name;
+use crate::air::Air;
 use crate::render::pass::smooth_body::radius_px;
 use crate::scene::gpu_data::MAX_BODIES;
 use crate::scene::{Body, Snapshot};

@@ -6,7 +6,7 @@
 //! asked by [`super::sky_probe`]. What all models share in a shader is `shaders/lib/sky_pixel.wgsl`. Not here: the sun's disc and the
 //! stars, which are drawn before and dimmed by the air.
 //!
-//! A new model: a variant of [`Model`], a file here with its painter, an arm in [`painter_of`], [`model_name`] and [`make`].
+//! A new model: a variant of [`Model`], a file here with its painter, its place in [`PAINTERS`], [`painter_of`] and [`model_name`].
 
 pub mod choose;
 pub mod physical;
@@ -81,7 +81,13 @@ pub struct Parts<'a> {
     pub picture: &'a wgpu::BindGroupLayout,
 }
 
-/// Place of a model's painter in the list of [`make`].
+/// Makes a model's painter.
+type Make = fn(&Parts<'_>) -> Result<Box<dyn Painter>, RenderError>;
+
+/// The painters, in the order of [`painter_of`].
+const PAINTERS: [Make; 1] = [physical::make];
+
+/// Place of a model's painter in [`PAINTERS`].
 const fn painter_of(model: &Model) -> usize {
     match model {
         Model::Physical(_) => 0,
@@ -95,19 +101,9 @@ pub const fn model_name(model: &Model) -> &'static str {
     }
 }
 
-/// One painter.
-fn make(parts: &Parts<'_>, which: usize) -> Result<Box<dyn Painter>, RenderError> {
-    Ok(match which {
-        _ => Box::new(physical::Physical::new(parts)?),
-    })
-}
-
-/// Painters there are.
-const PAINTERS: usize = 1;
-
 /// The painter of one model alone, for probes.
 pub fn painter(parts: &Parts<'_>, model: &Model) -> Result<Box<dyn Painter>, RenderError> {
-    make(parts, painter_of(model))
+    PAINTERS[painter_of(model)](parts)
 }
 
 /// Layout of group 2.
@@ -135,7 +131,7 @@ impl Sky {
     pub fn new(gpu: &Gpu, shaders: &ShaderLibrary, shared: &Shared) -> Result<Self, RenderError> {
         let picture = picture_layout(gpu);
         let parts = Parts { gpu, shaders, shared, picture: &picture };
-        let painters = (0..PAINTERS).map(|i| make(&parts, i)).collect::<Result<Vec<_>, _>>()?;
+        let painters = PAINTERS.iter().map(|make| make(&parts)).collect::<Result<Vec<_>, _>>()?;
         let uniforms = (0..MAX_AIRS).map(|_| Uniform::new(&gpu.device, "Sky", wgpu::BufferUsages::empty())).collect();
         Ok(Self { steps: STEPS, picture, painters, uniforms, chosen: Vec::new(), in_aerial: false })
     }
@@ -156,7 +152,8 @@ impl Sky {
         self.chosen.retain(|c| c.skip.is_none());
         let mut missing = 0;
         for (i, painter) in self.painters.iter_mut().enumerate() {
-            let airs: Vec<(u16, &Air)> = self.chosen.iter().filter_map(|c| air_of(f.scene, c)).filter(|a| painter_of(&a.1.model) == i).collect();
+            let airs: Vec<(u16, &Air)> =
+                self.chosen.iter().filter_map(|c| air_of(f.scene, c)).filter(|a| painter_of(&a.1.model) == i).collect();
             missing += painter.plan(f.gpu, &airs, f.scene.force.all);
         }
         (missing == 0).then(|| "no model in view needs tables of its own that it does not have".to_owned())
@@ -189,10 +186,7 @@ impl Sky {
             let Some((id, air)) = air_of(f.scene, choice) else { continue };
             let Some(painter) = self.painters.get(painter_of(&air.model)) else { continue };
             let Some(body) = f.scene.bodies.get(choice.body as usize) else { continue };
-            uniform.write(
-                &f.gpu.queue,
-                &SkyUniform { ids: [choice.body, self.steps, 0, 0], settings: painter.settings(body, air) },
-            );
+            uniform.write(&f.gpu.queue, &SkyUniform { ids: [choice.body, self.steps, 0, 0], settings: painter.settings(body, air) });
             let targets = f.targets;
             let (current, other) = if self.in_aerial { (&targets.aerial, &targets.opaque) } else { (&targets.opaque, &targets.aerial) };
             let (from, into) = if choice.rect == whole {

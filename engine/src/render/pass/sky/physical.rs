@@ -6,15 +6,19 @@ use crate::render::RenderError;
 use crate::scene::Body;
 use crate::scene::gpu_data::SkySettings;
 
+/// Compiles it.
+pub fn make(parts: &Parts<'_>) -> Result<Box<dyn Painter>, RenderError> {
+    Ok(Box::new(Physical::new(parts)?))
+}
+
 /// The painter.
-pub struct Physical {
+struct Physical {
     kind: PainterKind,
     none: wgpu::BindGroup,
 }
 
 impl Physical {
-    /// Compiles it.
-    pub fn new(parts: &Parts<'_>) -> Result<Self, RenderError> {
+    fn new(parts: &Parts<'_>) -> Result<Self, RenderError> {
         let kind = PainterKind::new(parts, "pass/sky_physical.wgsl", &[])?;
         let none = parts.gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("group 3: physical"),
