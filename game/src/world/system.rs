@@ -3,7 +3,6 @@
 use super::eclipse::almanac::Almanac;
 use super::ship::local::air_top_m;
 use super::ship::warp::floor_m;
-use engine::air::Medium;
 use engine::air::density::Column;
 use engine::orbit::eclipse::Shape;
 use engine::orbit::ephemeris::Ephemeris;
@@ -24,13 +23,13 @@ const LUMINANCE: Vec3 = Vec3::new(0.2126, 0.7152, 0.0722);
 /// Luminous efficacy of the Sun's light above the air, lm/W: 1.28e5 lx of 1361 W/m².
 const SUN_LM_W: f64 = 94.04;
 
-/// The air of a body: what drags (`column`) and what one sees (`medium`), described apart.
+/// The air of a body: what drags (`column`) and what one sees (`look`), described apart.
 #[derive(Clone, Debug)]
 pub struct Air {
     /// Temperature, pressure and density against altitude.
     pub column: Column,
-    /// Optical layers.
-    pub medium: Medium,
+    /// Optical layers, and the model that draws them.
+    pub look: engine::air::Air,
 }
 
 /// A body of the system.
