@@ -2,7 +2,7 @@
 //! stopping at the first. What was never asked for is unknown. After a fault a placeholder (NaN, an empty string) goes on, which
 //! nobody sees: a load with faults gives no result.
 
-use super::fault::{Fault, did_you_mean, nearest};
+use super::fault::{At, Fault, did_you_mean, nearest};
 use super::tree::{Data, Node};
 use std::cell::RefCell;
 use std::ops::RangeInclusive;
@@ -144,6 +144,21 @@ impl<'a> Reader<'a> {
     /// A string that may be left out.
     pub fn maybe_text(&self, key: &'static str) -> Option<String> {
         self.find(key).map(|node| self.string(key, node))
+    }
+
+    /// A list of strings, at least one, each with its place.
+    pub fn texts(&self, key: &'static str) -> Vec<(String, At)> {
+        let expected = "a list of strings, at least one";
+        match self.need(key, expected) {
+            Some(Node { data: Data::Array(list), .. }) if !list.is_empty() => {
+                list.iter().enumerate().map(|(i, item)| (self.string(&format!("{key}[{i}]"), item), item.at.clone())).collect()
+            }
+            Some(node) => {
+                self.mismatch(key, node, expected);
+                Vec::new()
+            }
+            None => Vec::new(),
+        }
     }
 
     fn string(&self, key: &str, node: &Node) -> String {

@@ -18,15 +18,6 @@ use engine::time::SimTime;
 use glam::Vec3;
 use std::sync::Arc;
 
-/// The air of a body: what drags (`column`) and what one sees (`medium`), described apart.
-#[derive(Clone, Debug)]
-pub struct Air {
-    /// Temperature, pressure and density against altitude.
-    pub column: Column,
-    /// Optical layers.
-    pub medium: Medium,
-}
-
 /// A body of the system.
 #[derive(Clone, Debug)]
 pub struct Body {
@@ -52,8 +43,10 @@ pub struct Body {
     pub albedo: Vec3,
     /// Luminous intensity, cd per linear sRGB channel; zero for all but stars.
     pub intensity_cd: Vec3,
-    /// Its air, if any.
-    pub air: Option<Air>,
+    /// Its air as it drags, if any: temperature, pressure and density against altitude.
+    pub air: Option<Column>,
+    /// Its air as it looks, if any. Nothing in the World reads it, so that its colours are no part of a flight.
+    pub look: Option<Medium>,
     /// Its ground; `None` for the star and the giants (a ship sinks and is crushed: see `ship::contact`).
     pub relief: Option<Arc<Relief>>,
     /// Largest factor by which relief is exaggerated from afar (1 = never).

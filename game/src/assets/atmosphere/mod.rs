@@ -1,4 +1,4 @@
-//! The `[air]` table: `[air.column]` (what drags) and `[air.medium]` (what one sees), each described on its own.
+//! A body's air, `atmosphere.toml`: what one sees at the top, what drags in `[physics]`, each described on its own.
 //!
 //! Range checks are the engine's; here its messages find their line.
 
@@ -8,32 +8,27 @@ use engine::air::density::Lapse;
 use engine::air::{Column, ColumnSpec, Layer, Medium, MediumSpec, Phase, Profile, RangeError};
 use engine::space::relative::narrow;
 
-/// Air that passed its checks. `None` stands for faults.
-#[derive(Clone, Debug)]
+/// Air as its file describes it.
+#[derive(Clone, Debug, Default)]
 pub struct AirSpec {
-    /// What drags.
+    /// What drags, if anything does.
     pub column: Option<Column>,
     /// What one sees.
     pub medium: Option<Medium>,
 }
 
-/// Reads the table of a body with this GM (m³/s²) and radius (m): they give the column its gravity, the medium its ground.
+/// Reads the file of a body with this GM (m³/s²) and radius (m): they give the column its gravity, the medium its ground.
 pub fn read_air(r: Reader<'_>, gm_m3_s2: f64, radius_m: f64) -> AirSpec {
     // A body whose radius is at fault gets no second fault for its air.
     let radius_m = if radius_m.is_finite() { radius_m } else { 6.371e6 };
     let gravity = if gm_m3_s2.is_finite() { gm_m3_s2 / (radius_m * radius_m) } else { 9.8 };
-    let column = r.table("column").and_then(|t| {
+    let column = r.maybe_table("physics").and_then(|t| {
         let spec = read_column(&t, radius_m, gravity);
         let built = tell(&t, Column::new(&spec));
         t.finish();
         built
     });
-    let medium = r.table("medium").and_then(|t| {
-        let spec = read_medium(&t);
-        let built = tell(&t, spec.build(radius_m));
-        t.finish();
-        built
-    });
+    let medium = tell(&r, read_medium(&r).build(radius_m));
     r.finish();
     AirSpec { column, medium }
 }
@@ -84,6 +79,7 @@ fn read_medium(r: &Reader<'_>) -> MediumSpec {
 }
 
 fn read_layer(r: Reader<'_>) -> Layer {
+    r.maybe_text("name");
     let layer = Layer {
         scattering_per_m: vec3(r.numbers("scattering_per_m", ANY)),
         absorption_per_m: vec3(r.numbers("absorption_per_m", ANY)),
