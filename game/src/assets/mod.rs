@@ -63,10 +63,12 @@
 pub mod atmosphere;
 pub mod body;
 pub mod fault;
+pub mod fields;
 pub mod overlay;
 pub mod reader;
 pub mod relief;
 pub mod reload;
+pub mod schema;
 pub mod ship;
 pub mod start;
 pub mod system;

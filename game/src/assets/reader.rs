@@ -31,6 +31,21 @@ impl<'a> Reader<'a> {
         Self { node, name: String::new(), faults, asked: RefCell::default() }
     }
 
+    /// The same table, to be read once more.
+    pub fn again(&self) -> Self {
+        Self { node: self.node, name: self.name.clone(), faults: self.faults, asked: RefCell::default() }
+    }
+
+    /// Whether a key is there; it counts as asked for.
+    pub fn has(&self, key: &'static str) -> bool {
+        self.find(key).is_some()
+    }
+
+    /// Errors written down so far, of this file and others.
+    pub fn errors(&self) -> usize {
+        count_errors(self.faults)
+    }
+
     /// Writes a fault down.
     pub fn fault(&self, fault: Fault) {
         self.faults.borrow_mut().push(fault);
@@ -90,9 +105,14 @@ impl<'a> Reader<'a> {
     }
 
     /// A whole number that fits `u32`.
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
     pub fn whole(&self, key: &'static str) -> u32 {
-        let x = self.number(key, 0.0..=f64::from(u32::MAX));
+        self.whole_in(key, 0.0..=f64::from(u32::MAX))
+    }
+
+    /// A whole number of a range within `u32`.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    pub fn whole_in(&self, key: &'static str, range: RangeInclusive<f64>) -> u32 {
+        let x = self.number(key, range);
         if x.fract() != 0.0 && x.is_finite() {
             self.wrong(key, format!("`{}` = {x}: expected a whole number", self.full(key)));
         }
@@ -120,6 +140,21 @@ impl<'a> Reader<'a> {
             _ => self.mismatch(key, node, expected),
         }
         out
+    }
+
+    /// Two numbers or more in a list.
+    pub fn series(&self, key: &'static str, range: RangeInclusive<f64>) -> Vec<f64> {
+        let expected = format!("a list of two or more numbers, each {}", words(&range));
+        match self.need(key, &expected) {
+            Some(Node { data: Data::Array(list), .. }) if list.len() > 1 => {
+                list.iter().enumerate().map(|(i, item)| self.checked(&format!("{key}[{i}]"), item, &range)).collect()
+            }
+            Some(node) => {
+                self.mismatch(key, node, &expected);
+                Vec::new()
+            }
+            None => Vec::new(),
+        }
     }
 
     /// A list of lists of `N` numbers; empty where the key is left out.
@@ -257,6 +292,11 @@ impl<'a> Reader<'a> {
             self.fault(fault.help(help));
         }
     }
+}
+
+/// Errors among what was written down.
+pub fn count_errors(faults: &Faults) -> usize {
+    faults.borrow().iter().filter(|f| f.is_error()).count()
 }
 
 fn words(range: &RangeInclusive<f64>) -> String {

@@ -4,7 +4,7 @@ use super::atmosphere::{AirSpec, read_air};
 use super::body::{BodySpec, read_body};
 use super::fault::{AssetErrors, At, Fault, nearest};
 use super::overlay::{Overlay, read_text};
-use super::reader::{Faults, POSITIVE, Reader};
+use super::reader::{Faults, POSITIVE, Reader, count_errors};
 use super::relief::load_maps;
 use super::tree::{Data, Node, parse};
 use crate::world::system::{Body, System};
@@ -29,10 +29,13 @@ pub fn load_system(overlay: &Overlay, key: &str, progress: &(dyn Fn(f32, &str) +
     let faults = Faults::default();
     let mut hash = blake3::Hasher::new();
     let system = read(overlay, key, &faults, &mut hash, progress);
-    let faults = faults.into_inner();
+    let found = AssetErrors { faults: faults.into_inner() };
     match system {
-        Some(system) if faults.is_empty() => Ok(Arc::new(system)),
-        _ => Err(AssetErrors { faults }),
+        Some(mut system) if !found.faults.iter().any(Fault::is_error) => {
+            system.warnings = found.faults.iter().map(Fault::text).collect();
+            Ok(Arc::new(system))
+        }
+        _ => Err(found),
     }
 }
 
@@ -94,7 +97,7 @@ fn read(overlay: &Overlay, key: &str, faults: &Faults, hash: &mut blake3::Hasher
         return None;
     }
     let (specs, airs): (Vec<BodySpec>, Vec<AirSpec>) = order.into_iter().map(|i| specs[i].clone()).unzip();
-    if !faults.borrow().is_empty() {
+    if count_errors(faults) > 0 {
         return None;
     }
     // Maps are most of the work, and independent of each other.
@@ -114,7 +117,7 @@ fn read(overlay: &Overlay, key: &str, faults: &Faults, hash: &mut blake3::Hasher
         faults.borrow_mut().extend(ground.faults);
         reliefs.push(ground.relief);
     }
-    if !faults.borrow().is_empty() {
+    if count_errors(faults) > 0 {
         return None;
     }
     let hash = hash.finalize().to_hex().to_string();
@@ -181,7 +184,7 @@ pub fn load_body(overlay: &Overlay, key: &str) -> Result<(), AssetErrors> {
     if let Some(tree) = read_tree(overlay, &format!("bodies/{key}/body.toml"), "the body", &faults) {
         let spec = read_body(key, Reader::new(&tree, &faults));
         read_atmosphere(overlay, &spec, &faults, &mut blake3::Hasher::new());
-        let ground = if faults.borrow().is_empty() { ground(&spec, overlay, &format!("bodies/{key}")) } else { Ground::default() };
+        let ground = if count_errors(&faults) == 0 { ground(&spec, overlay, &format!("bodies/{key}")) } else { Ground::default() };
         faults.borrow_mut().extend(ground.faults);
     }
     AssetErrors { faults: faults.into_inner() }.or(())
@@ -242,7 +245,7 @@ fn read_mass(r: Reader<'_>) -> (String, Mass) {
 /// The star first, then depth first: each body by its distance from its parent, its moons behind it. `None` where the tree
 /// of parents is broken, which is then written down.
 fn order(specs: &[(BodySpec, AirSpec)], folders: &[&str], faults: &Faults) -> Option<Vec<usize>> {
-    let before = faults.borrow().len();
+    let before = count_errors(faults);
     let find = |key: &str| specs.iter().position(|s| s.0.key == key);
     let mut roots = Vec::new();
     for (i, (s, _)) in specs.iter().enumerate() {
@@ -284,7 +287,7 @@ fn order(specs: &[(BodySpec, AirSpec)], folders: &[&str], faults: &Faults) -> Op
         let message = "missing table [star]: expected it in the body without a `parent`";
         faults.borrow_mut().push(Fault::at(&specs[*root].0.at, message));
     }
-    if faults.borrow().len() > before {
+    if count_errors(faults) > before {
         return None;
     }
     let mut order = Vec::new();

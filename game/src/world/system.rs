@@ -68,6 +68,8 @@ pub struct System {
     pub gravity: Model,
     /// blake3 of the asset files that the World depends on, hex; a replay refuses others.
     pub hash: String,
+    /// What its files hold that can be used and is hardly meant, for people to read.
+    pub warnings: Vec<String>,
     /// What is known of its eclipses so far.
     pub eclipses: Almanac,
 }
@@ -89,7 +91,7 @@ impl System {
             }
         };
         let gravity = Model::new(bodies.iter().enumerate().map(as_met).collect(), Bound::COAST);
-        Self { key, name, bodies, ephemeris, gravity, hash, eclipses: Almanac::default() }
+        Self { key, name, bodies, ephemeris, gravity, hash, warnings: Vec::new(), eclipses: Almanac::default() }
     }
     /// The body behind a handle.
     pub fn body(&self, id: BodyId) -> &Body {
