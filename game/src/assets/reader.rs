@@ -67,7 +67,8 @@ impl<'a> Reader<'a> {
         self.node.get(key).map(|e| &e.value)
     }
 
-    fn need(&self, key: &'static str, expected: &str) -> Option<&'a Node> {
+    /// A value that must be there.
+    pub fn needed(&self, key: &'static str, expected: &str) -> Option<&'a Node> {
         let found = self.find(key);
         if found.is_none() {
             let table = if self.name.is_empty() { "at the top of the file".to_owned() } else { format!("in [{}]", self.name) };
@@ -96,7 +97,7 @@ impl<'a> Reader<'a> {
 
     /// A number that must be there.
     pub fn number(&self, key: &'static str, range: RangeInclusive<f64>) -> f64 {
-        self.need(key, &words(&range)).map_or(f64::NAN, |n| self.checked(key, n, &range))
+        self.needed(key, &words(&range)).map_or(f64::NAN, |n| self.checked(key, n, &range))
     }
 
     /// A number that may be left out.
@@ -122,7 +123,7 @@ impl<'a> Reader<'a> {
     /// `N` numbers in a list.
     pub fn numbers<const N: usize>(&self, key: &'static str, range: RangeInclusive<f64>) -> [f64; N] {
         let expected = format!("a list of {N} numbers, each {}", words(&range));
-        self.need(key, &expected).map_or([f64::NAN; N], |n| self.list(key, n, &range, &expected))
+        self.needed(key, &expected).map_or([f64::NAN; N], |n| self.list(key, n, &range, &expected))
     }
 
     fn list<const N: usize>(&self, key: &str, node: &Node, range: &RangeInclusive<f64>, expected: &str) -> [f64; N] {
@@ -145,7 +146,7 @@ impl<'a> Reader<'a> {
     /// Two numbers or more in a list.
     pub fn series(&self, key: &'static str, range: RangeInclusive<f64>) -> Vec<f64> {
         let expected = format!("a list of two or more numbers, each {}", words(&range));
-        match self.need(key, &expected) {
+        match self.needed(key, &expected) {
             Some(Node { data: Data::Array(list), .. }) if list.len() > 1 => {
                 list.iter().enumerate().map(|(i, item)| self.checked(&format!("{key}[{i}]"), item, &range)).collect()
             }
@@ -172,7 +173,7 @@ impl<'a> Reader<'a> {
 
     /// A string that must be there and not be empty.
     pub fn text(&self, key: &'static str) -> String {
-        let Some(node) = self.need(key, "a string") else { return String::new() };
+        let Some(node) = self.needed(key, "a string") else { return String::new() };
         self.string(key, node)
     }
 
@@ -184,7 +185,7 @@ impl<'a> Reader<'a> {
     /// A list of strings, at least one, each with its place.
     pub fn texts(&self, key: &'static str) -> Vec<(String, At)> {
         let expected = "a list of strings, at least one";
-        match self.need(key, expected) {
+        match self.needed(key, expected) {
             Some(Node { data: Data::Array(list), .. }) if !list.is_empty() => {
                 list.iter().enumerate().map(|(i, item)| (self.string(&format!("{key}[{i}]"), item), item.at.clone())).collect()
             }
@@ -214,7 +215,7 @@ impl<'a> Reader<'a> {
     pub fn choice(&self, key: &'static str, words: &[&'static str]) -> &'static str {
         let expected = format!("one of {}", words.iter().map(|w| format!("\"{w}\"")).collect::<Vec<_>>().join(", "));
         let fallback = words.first().copied().unwrap_or("");
-        let Some(node) = self.need(key, &expected) else { return fallback };
+        let Some(node) = self.needed(key, &expected) else { return fallback };
         let Data::Text(s) = &node.data else {
             self.mismatch(key, node, &expected);
             return fallback;
@@ -228,7 +229,7 @@ impl<'a> Reader<'a> {
 
     /// true or false, which must be there.
     pub fn flag(&self, key: &'static str) -> bool {
-        let Some(node) = self.need(key, "true or false") else { return false };
+        let Some(node) = self.needed(key, "true or false") else { return false };
         let Data::Bool(b) = node.data else {
             self.mismatch(key, node, "true or false");
             return false;
@@ -249,7 +250,7 @@ impl<'a> Reader<'a> {
     /// A table that must be there.
     pub fn table(&self, key: &'static str) -> Option<Reader<'a>> {
         let name = self.full(key);
-        self.need(key, &format!("a table [{name}]"))?;
+        self.needed(key, &format!("a table [{name}]"))?;
         self.maybe_table(key)
     }
 

@@ -1,6 +1,6 @@
 //! A system from its file: that of every body that it lists is read and checked, all faults are gathered, and only a system without any is built.
 
-use super::atmosphere::{AirSpec, read_air};
+use super::atmosphere::{AirSpec, Datum, read_air};
 use super::body::{BodySpec, read_body};
 use super::fault::{AssetErrors, At, Fault, nearest};
 use super::overlay::{Overlay, read_text};
@@ -81,6 +81,7 @@ fn read(overlay: &Overlay, key: &str, faults: &Faults, hash: &mut blake3::Hasher
     tell_orphans(overlay, faults);
     let mut specs = Vec::new();
     let mut whole = true;
+    let mut drags = BTreeMap::new();
     for (body, at) in &top.bodies {
         hash.update(body.as_bytes());
         let Some(tree) = read_listed(overlay, body, at, faults) else {
@@ -89,7 +90,8 @@ fn read(overlay: &Overlay, key: &str, faults: &Faults, hash: &mut blake3::Hasher
         };
         digest(&tree, &["name", "albedo"], hash);
         let spec = read_body(body, Reader::new(&tree, faults));
-        let air = read_atmosphere(overlay, &spec, faults, hash);
+        let (air, drag) = read_atmosphere(overlay, body, Datum::new(spec.gm_m3_s2, spec.radius_m), faults);
+        drags.insert(body.clone(), drag);
         specs.push((spec, air));
     }
     let order = order(&specs, &top.bodies.keys().map(String::as_str).collect::<Vec<_>>(), faults)?;
@@ -120,8 +122,39 @@ fn read(overlay: &Overlay, key: &str, faults: &Faults, hash: &mut blake3::Hasher
     if count_errors(faults) > 0 {
         return None;
     }
-    let hash = hash.finalize().to_hex().to_string();
-    build(key, top, specs, airs, reliefs, hash).map_err(|f| faults.borrow_mut().push(f)).ok()
+    let solid = hash.finalize().to_hex().to_string();
+    let hash = whole_hash(&solid, &drags);
+    let system = build(key, top, specs, airs, reliefs, hash).map_err(|f| faults.borrow_mut().push(f)).ok()?;
+    Some(System { solid_hash: solid, ..system })
+}
+
+/// The hash of what a flight depends on, from that of all but the air and those of the air that drags, by body.
+fn whole_hash(solid: &str, drags: &BTreeMap<String, String>) -> String {
+    let mut hash = blake3::Hasher::new();
+    hash.update(solid.as_bytes());
+    for (body, drag) in drags {
+        hash.update(body.as_bytes()).update(drag.as_bytes());
+    }
+    hash.finalize().to_hex().to_string()
+}
+
+/// A system with its airs read anew and all else as it is: a thousandth of the work of [`load_system`], for those who turn a sky's
+/// colours while they look at it.
+pub fn reread_airs(overlay: &Overlay, system: &System) -> Result<Arc<System>, AssetErrors> {
+    let faults = Faults::default();
+    tell_orphans(overlay, &faults);
+    let mut drags = BTreeMap::new();
+    let mut bodies = system.bodies.clone();
+    for body in &mut bodies {
+        let (air, drag) = read_atmosphere(overlay, &body.key, Datum::new(body.gm_m3_s2, body.radius_m), &faults);
+        (body.air, body.look) = (air.column, air.look);
+        drags.insert(body.key.clone(), drag);
+    }
+    let hash = whole_hash(&system.solid_hash, &drags);
+    let found = AssetErrors { faults: faults.into_inner() };
+    let warnings = found.faults.iter().map(Fault::text).collect();
+    let new = System::new(system.key.clone(), system.name.clone(), bodies, system.ephemeris.clone(), hash);
+    found.or(Arc::new(System { solid_hash: system.solid_hash.clone(), warnings, eclipses: system.eclipses.clone(), ..new }))
 }
 
 /// What `system.toml` says.
@@ -183,7 +216,7 @@ pub fn load_body(overlay: &Overlay, key: &str) -> Result<(), AssetErrors> {
     tell_orphans(overlay, &faults);
     if let Some(tree) = read_tree(overlay, &format!("bodies/{key}/body.toml"), "the body", &faults) {
         let spec = read_body(key, Reader::new(&tree, &faults));
-        read_atmosphere(overlay, &spec, &faults, &mut blake3::Hasher::new());
+        read_atmosphere(overlay, key, Datum::new(spec.gm_m3_s2, spec.radius_m), &faults);
         let ground = if count_errors(&faults) == 0 { ground(&spec, overlay, &format!("bodies/{key}")) } else { Ground::default() };
         faults.borrow_mut().extend(ground.faults);
     }
@@ -210,17 +243,19 @@ fn tell_orphans(overlay: &Overlay, faults: &Faults) {
     }
 }
 
-/// The air of a body: a file of its own, without which there is none. Only what drags is part of the hash.
-fn read_atmosphere(overlay: &Overlay, body: &BodySpec, faults: &Faults, hash: &mut blake3::Hasher) -> AirSpec {
-    let relative = format!("bodies/{}/atmosphere.toml", body.key);
+/// The air of a body: a file of its own, without which there is none. The second value is the hash of what drags in it: the look is no
+/// part of a flight.
+fn read_atmosphere(overlay: &Overlay, body: &str, datum: Datum, faults: &Faults) -> (AirSpec, String) {
+    let relative = format!("bodies/{body}/atmosphere.toml");
     if overlay.find(&relative).is_none() {
-        return AirSpec::default();
+        return Default::default();
     }
-    let Some(tree) = read_tree(overlay, &relative, "the air", faults) else { return AirSpec::default() };
+    let Some(tree) = read_tree(overlay, &relative, "the air", faults) else { return Default::default() };
+    let mut hash = blake3::Hasher::new();
     if let Some(physics) = tree.get("physics") {
-        physics.value.digest(hash);
+        physics.value.digest(&mut hash);
     }
-    read_air(Reader::new(&tree, faults), body.gm_m3_s2, body.radius_m)
+    (read_air(&Reader::new(&tree, faults), datum), hash.finalize().to_hex().to_string())
 }
 
 /// Feeds a file's values to the hash, but for what a flight does not depend on.
@@ -406,7 +441,7 @@ fn build(
         albedo: s.albedo,
         intensity_cd: s.intensity_cd,
         air: air.column,
-        look: air.medium,
+        look: air.look,
         relief,
         relief_max: s.relief.as_ref().map_or(1.0, |(_, max)| *max),
     });

@@ -247,7 +247,7 @@ malformed! {
     unknown_physics: AIR_FILE, "kind = \"hydrostatic\"" => "kind = \"us67\"", line 9, ["did you mean `us76`?"];
     impossible_air: AIR_FILE, "heat_capacity_ratio = 1.4" => "heat_capacity_ratio = 14.0", line 14, ["heat_capacity_ratio", "from 1 to 1.7"];
     lapse_below_zero_kelvin: AIR_FILE, "to_altitude_m = 10000.0" => "to_altitude_m = 90000.0", line 15, ["lapse[0]", "from 1 to"];
-    phase_out_of_range: AIR_FILE, "g = 0.8" => "g = 1.8", line 7, ["layers[0].phase.g", "0.98"];
+    phase_out_of_range: AIR_FILE, "g = 0.8" => "g = 1.8", line 7, ["layers[0].phase.g", "0.99"];
     unknown_profile: AIR_FILE, "kind = \"exponential\"" => "kind = \"exponetial\"", line 6, ["did you mean `exponential`?"];
     no_layers: AIR_FILE, "[[layers]]" => "[[layer]]", line 3, ["did you mean `layers`?"];
     unknown_table_of_air: AIR_FILE, "[physics]" => "[phyiscs]", line 8, ["unknown key `phyiscs`", "did you mean `physics`?"];
@@ -396,7 +396,7 @@ fn a_patch_changes_a_list_by_the_names_in_it() {
     let mods = [one.path().to_owned()];
     let look = |patch: &str| {
         put(one.path(), "bodies/rock/atmosphere.patch.toml", patch.as_bytes());
-        load_system(dir.path(), &mods, "t").map(|s| s.body(s.find("rock").unwrap()).look.clone().unwrap().layers).map_err(|e| e.text())
+        load_system(dir.path(), &mods, "t").map(|s| s.body(s.find("rock").unwrap()).look.clone().unwrap().medium.layers).map_err(|e| e.text())
     };
     let blue = look("[layers.gas]\nscattering_per_m = [1e-6, 2e-6, 9e-6]\n").unwrap();
     assert_eq!((blue.len(), blue[0].scattering_per_m), (1, glam::Vec3::new(1e-6, 2e-6, 9e-6)));

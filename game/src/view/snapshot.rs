@@ -127,7 +127,7 @@ impl Stage<'_> {
             }
             _ => Surface::Smooth,
         };
-        let shell = body.radius_m + body.look.as_ref().map_or(0.0, |a| a.top_altitude_m);
+        let shell = body.radius_m + body.look.as_ref().map_or(0.0, |a| a.medium.top_altitude_m);
         Body {
             id: id.0,
             centre_m: narrow3(centre),

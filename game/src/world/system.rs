@@ -3,8 +3,7 @@
 use super::eclipse::almanac::Almanac;
 use super::ship::local::air_top_m;
 use super::ship::warp::floor_m;
-use engine::air::Medium;
-use engine::air::density::Column;
+use engine::air::{Air, Column};
 use engine::orbit::eclipse::Shape;
 use engine::orbit::ephemeris::Ephemeris;
 use engine::orbit::field::{Bound, Source};
@@ -46,7 +45,7 @@ pub struct Body {
     /// Its air as it drags, if any: temperature, pressure and density against altitude.
     pub air: Option<Column>,
     /// Its air as it looks, if any. Nothing in the World reads it, so that its colours are no part of a flight.
-    pub look: Option<Medium>,
+    pub look: Option<Air>,
     /// Its ground; `None` for the star and the giants (a ship sinks and is crushed: see `ship::contact`).
     pub relief: Option<Arc<Relief>>,
     /// Largest factor by which relief is exaggerated from afar (1 = never).
@@ -68,6 +67,8 @@ pub struct System {
     pub gravity: Model,
     /// blake3 of the asset files that the World depends on, hex; a replay refuses others.
     pub hash: String,
+    /// The same without the air: what stays when only airs are read anew.
+    pub solid_hash: String,
     /// What its files hold that can be used and is hardly meant, for people to read.
     pub warnings: Vec<String>,
     /// What is known of its eclipses so far.
@@ -91,7 +92,7 @@ impl System {
             }
         };
         let gravity = Model::new(bodies.iter().enumerate().map(as_met).collect(), Bound::COAST);
-        Self { key, name, bodies, ephemeris, gravity, hash, warnings: Vec::new(), eclipses: Almanac::default() }
+        Self { key, name, bodies, ephemeris, gravity, hash, solid_hash: String::new(), warnings: Vec::new(), eclipses: Almanac::default() }
     }
     /// The body behind a handle.
     pub fn body(&self, id: BodyId) -> &Body {

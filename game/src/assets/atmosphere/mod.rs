@@ -118,7 +118,7 @@ fn model_of(r: &Reader<'_>, word: &str) -> Option<Model> {
     let mut settings = table.map_or_else(|| serde_json::json!({}), Node::json);
     settings["model"] = word.into();
     match serde_json::from_value::<Model>(settings) {
-        Ok(model) => tell(r, &format!("{word}."), model.validate().map(|()| model)),
+        Ok(model) => Some(model),
         Err(e) => {
             r.wrong(word, format!("[{word}]: {e}: expected the settings of the model"));
             None
