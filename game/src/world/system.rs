@@ -3,7 +3,7 @@
 use super::eclipse::almanac::Almanac;
 use super::ship::local::air_top_m;
 use super::ship::warp::floor_m;
-use engine::air::density::Column;
+use engine::air::{Air, Column};
 use engine::orbit::eclipse::Shape;
 use engine::orbit::ephemeris::Ephemeris;
 use engine::orbit::field::{Bound, Source};
@@ -22,15 +22,6 @@ use std::sync::Arc;
 const LUMINANCE: Vec3 = Vec3::new(0.2126, 0.7152, 0.0722);
 /// Luminous efficacy of the Sun's light above the air, lm/W: 1.28e5 lx of 1361 W/m².
 const SUN_LM_W: f64 = 94.04;
-
-/// The air of a body: what drags (`column`) and what one sees (`look`), described apart.
-#[derive(Clone, Debug)]
-pub struct Air {
-    /// Temperature, pressure and density against altitude.
-    pub column: Column,
-    /// Optical layers, and the model that draws them.
-    pub look: engine::air::Air,
-}
 
 /// A body of the system.
 #[derive(Clone, Debug)]
@@ -57,8 +48,10 @@ pub struct Body {
     pub albedo: Vec3,
     /// Luminous intensity, cd per linear sRGB channel; zero for all but stars.
     pub intensity_cd: Vec3,
-    /// Its air, if any.
-    pub air: Option<Air>,
+    /// Its air as it drags, if any: temperature, pressure and density against altitude.
+    pub air: Option<Column>,
+    /// Its air as it looks, if any. Nothing in the World reads it, so that its colours are no part of a flight.
+    pub look: Option<Air>,
     /// Its ground; `None` for the star and the giants (a ship sinks and is crushed: see `ship::contact`).
     pub relief: Option<Arc<Relief>>,
     /// Largest factor by which relief is exaggerated from afar (1 = never).
@@ -82,6 +75,10 @@ pub struct System {
     pub gravity: Model,
     /// blake3 of the asset files that the World depends on, hex; a replay refuses others.
     pub hash: String,
+    /// The same without the air: what stays when only airs are read anew.
+    pub solid_hash: String,
+    /// What its files hold that can be used and is hardly meant, for people to read.
+    pub warnings: Vec<String>,
     /// What is known of its eclipses so far.
     pub eclipses: Almanac,
 }
@@ -104,7 +101,18 @@ impl System {
         };
         let gravity = Model::new(bodies.iter().enumerate().map(as_met).collect(), Bound::COAST);
         let light_n = bodies.first().map_or(0.0, |star| f64::from(star.intensity_cd.dot(LUMINANCE)) / SUN_LM_W / SPEED_OF_LIGHT);
-        Self { key, name, bodies, ephemeris, light_n, gravity, hash, eclipses: Almanac::default() }
+        Self {
+            key,
+            name,
+            bodies,
+            ephemeris,
+            light_n,
+            gravity,
+            hash,
+            solid_hash: String::new(),
+            warnings: Vec::new(),
+            eclipses: Almanac::default(),
+        }
     }
     /// The body behind a handle.
     pub fn body(&self, id: BodyId) -> &Body {
