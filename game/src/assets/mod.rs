@@ -65,6 +65,7 @@ pub mod body;
 pub mod fault;
 pub mod fields;
 pub mod overlay;
+pub mod planet;
 pub mod reader;
 pub mod relief;
 pub mod reload;
