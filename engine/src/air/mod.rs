@@ -2,12 +2,13 @@
 //!
 //! [`density`] is what drags (temperature, pressure, density); [`medium`] is what one sees (coefficients of scattering and
 //! absorption), and [`optics`] what these are for a gas of known molecules; [`reference`] integrates light through a medium in f64,
-//! slowly, and judges the tables and the shaders.
+//! slowly, and judges the tables and the shaders; [`spectral`] is air by wavelength, and how few wavelengths do for all.
 
 pub mod density;
 pub mod medium;
 pub mod optics;
 pub mod reference;
+pub mod spectral;
 mod us76;
 
 pub use density::{Column, ColumnSpec};
