@@ -3,7 +3,7 @@
 use super::eclipse::almanac::Almanac;
 use super::ship::local::air_top_m;
 use super::ship::warp::floor_m;
-use engine::air::density::Column;
+use engine::air::{Air, Column};
 use engine::orbit::eclipse::Shape;
 use engine::orbit::ephemeris::Ephemeris;
 use engine::orbit::field::{Bound, Source};
@@ -16,15 +16,6 @@ use engine::terrain::Relief;
 use engine::time::SimTime;
 use glam::Vec3;
 use std::sync::Arc;
-
-/// The air of a body: what drags (`column`) and what one sees (`look`), described apart.
-#[derive(Clone, Debug)]
-pub struct Air {
-    /// Temperature, pressure and density against altitude.
-    pub column: Column,
-    /// Optical layers, and the model that draws them.
-    pub look: engine::air::Air,
-}
 
 /// A body of the system.
 #[derive(Clone, Debug)]
@@ -51,8 +42,10 @@ pub struct Body {
     pub albedo: Vec3,
     /// Luminous intensity, cd per linear sRGB channel; zero for all but stars.
     pub intensity_cd: Vec3,
-    /// Its air, if any.
-    pub air: Option<Air>,
+    /// Its air as it drags, if any: temperature, pressure and density against altitude.
+    pub air: Option<Column>,
+    /// Its air as it looks, if any. Nothing in the World reads it, so that its colours are no part of a flight.
+    pub look: Option<Air>,
     /// Its ground; `None` for the star and the giants (a ship sinks and is crushed: see `ship::contact`).
     pub relief: Option<Arc<Relief>>,
     /// Largest factor by which relief is exaggerated from afar (1 = never).
@@ -74,6 +67,10 @@ pub struct System {
     pub gravity: Model,
     /// blake3 of the asset files that the World depends on, hex; a replay refuses others.
     pub hash: String,
+    /// The same without the air: what stays when only airs are read anew.
+    pub solid_hash: String,
+    /// What its files hold that can be used and is hardly meant, for people to read.
+    pub warnings: Vec<String>,
     /// What is known of its eclipses so far.
     pub eclipses: Almanac,
 }
@@ -95,7 +92,7 @@ impl System {
             }
         };
         let gravity = Model::new(bodies.iter().enumerate().map(as_met).collect(), Bound::COAST);
-        Self { key, name, bodies, ephemeris, gravity, hash, eclipses: Almanac::default() }
+        Self { key, name, bodies, ephemeris, gravity, hash, solid_hash: String::new(), warnings: Vec::new(), eclipses: Almanac::default() }
     }
     /// The body behind a handle.
     pub fn body(&self, id: BodyId) -> &Body {

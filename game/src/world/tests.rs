@@ -6,10 +6,9 @@ use super::readout::Situation;
 use super::ship::spec::ShipSpec;
 use super::ship::spec::tests::torch;
 use super::ship::{Motion, Rigid, attitude};
-use super::system::{Air, Body, System};
+use super::system::{Body, System};
 use super::*;
 use crate::command::Spot;
-use engine::air::Medium;
 use engine::air::density::{Column, ColumnSpec};
 use engine::orbit::ephemeris::{Ephemeris, Orbit, Path as EphemerisPath};
 use engine::orbit::rotation::Spin;
@@ -22,12 +21,11 @@ const START: SimTime = SimTime::from_ticks(1_000_000);
 /// A lone smooth body that turns once in `day_s`.
 fn lone_body(gm: f64, radius_m: f64, day_s: f64, air: Option<Column>) -> Arc<System> {
     let spin = Spin { pole_dec_rad: [90.0 * DEG, 0.0], meridian_rad: [0.3, core::f64::consts::TAU * 86_400.0 / day_s], ..Spin::default() };
-    let medium = Medium { bottom_radius_m: radius_m, top_altitude_m: 1e5, ground_albedo: Vec3::splat(0.1), layers: Vec::new() };
-    let body = rock(gm, radius_m, spin, air.map(|column| Air { column, look: medium.into() }));
+    let body = rock(gm, radius_m, spin, air);
     Arc::new(System::new("test".into(), "Test".into(), vec![body], Ephemeris::default(), String::new()))
 }
 
-fn rock(gm: f64, radius_m: f64, spin: Spin, air: Option<Air>) -> Body {
+fn rock(gm: f64, radius_m: f64, spin: Spin, air: Option<Column>) -> Body {
     Body {
         key: "rock".into(),
         name: "Rock".into(),
@@ -41,6 +39,7 @@ fn rock(gm: f64, radius_m: f64, spin: Spin, air: Option<Air>) -> Body {
         albedo: Vec3::splat(0.1),
         intensity_cd: Vec3::ZERO,
         air,
+        look: None,
         relief: Some(Arc::new(Relief::smooth(radius_m, false))),
         relief_max: 1.0,
     }
