@@ -235,13 +235,22 @@ pub struct AirsUniform {
 }
 
 impl AirUniform {
-    /// From a medium; layers beyond [`Medium::MAX_LAYERS`] are left out.
+    /// Layers that it holds.
+    pub const LAYERS: usize = 4;
+
+    /// From a medium: its first [`Self::LAYERS`] exponential and tent layers. Henyey–Greenstein is taken for Cornette–Shanks, any other phase for Rayleigh's.
     pub fn new(medium: &Medium) -> Self {
         let mut air = Self::zeroed();
         air.shape = [narrow(medium.bottom_radius_m), narrow(medium.top_altitude_m), 0.0, 0.0];
         air.albedo = vec4(medium.ground_albedo, 0.0);
         air.asymmetry = [PHASE_RAYLEIGH; 4];
-        for (i, layer) in medium.layers.iter().take(Medium::MAX_LAYERS).enumerate() {
+        for (i, layer) in medium
+            .layers
+            .iter()
+            .filter(|l| matches!(l.profile, Profile::Exponential { .. } | Profile::Tent { .. }))
+            .take(Self::LAYERS)
+            .enumerate()
+        {
             air.scattering[i] = vec4(layer.scattering_per_m, 0.0);
             air.extinction[i] = vec4(layer.scattering_per_m + layer.absorption_per_m, 0.0);
             match layer.profile {
@@ -252,8 +261,9 @@ impl AirUniform {
                     air.tent_top[i] = top_m;
                     air.tent_fall[i] = 1.0 / (top_m - peak_m);
                 }
+                Profile::Constant { .. } | Profile::Table { .. } => {}
             }
-            if let Phase::CornetteShanks { g } = layer.phase {
+            if let Phase::CornetteShanks { g } | Phase::HenyeyGreenstein { g } = layer.phase {
                 air.asymmetry[i] = g;
             }
         }

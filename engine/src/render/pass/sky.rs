@@ -89,7 +89,7 @@ fn drawn(scene: &Snapshot) -> Vec<u32> {
 /// Whether any of a body's air may lie within the cone around the picture's corners.
 fn in_view(scene: &Snapshot, body: &Body) -> bool {
     let Some(air) = &body.air else { return false };
-    let outer = body.radius_m + crate::space::relative::narrow(air.top_altitude_m);
+    let outer = body.radius_m + crate::space::relative::narrow(air.medium.top_altitude_m);
     let distance = body.radius_m + body.camera_altitude_m;
     if distance <= outer {
         return true;
