@@ -119,15 +119,15 @@ impl LimbTable {
     /// Everything that is out of range, all together; empty when all is well.
     pub fn validate(&self) -> Vec<RangeError> {
         let mut e = Vec::new();
-        RangeError::check(&mut e, "limb_table.size", f64::from(self.size), 8.0, 1024.0);
+        RangeError::check(&mut e, "size", f64::from(self.size), 8.0, 1024.0);
         if self.size % 2 != 0 {
-            e.push(RangeError { field: "limb_table.size".into(), found: f64::from(self.size), expected: "an even number".into() });
+            e.push(RangeError { field: "size".into(), found: f64::from(self.size), expected: "an even number".into() });
         }
         for (i, x) in self.light_scale_per_sr.to_array().into_iter().enumerate() {
-            RangeError::check(&mut e, &format!("limb_table.light_scale_per_sr[{i}]"), f64::from(x), 0.0, 1000.0);
+            RangeError::check(&mut e, &format!("light_scale_per_sr[{i}]"), f64::from(x), 0.0, 1000.0);
         }
-        RangeError::check(&mut e, "limb_table.march_step_radii", f64::from(self.march_step_radii), 9.99e-6, 1.0);
-        RangeError::check(&mut e, "limb_table.density_exponent", f64::from(self.density_exponent), 0.0, 32.0);
+        RangeError::check(&mut e, "march_step_radii", f64::from(self.march_step_radii), 9.99e-6, 1.0);
+        RangeError::check(&mut e, "density_exponent", f64::from(self.density_exponent), 0.0, 32.0);
         e
     }
 
@@ -311,6 +311,6 @@ mod tests {
         let bad = LimbTable { size: 7, light_scale_per_sr: Vec3::new(0.1, -1.0, f32::NAN), march_step_radii: 0.0, density_exponent: 99.0 };
         let fields: Vec<String> = bad.validate().into_iter().map(|e| e.field).collect();
         let expected = ["size", "size", "light_scale_per_sr[1]", "light_scale_per_sr[2]", "march_step_radii", "density_exponent"];
-        assert_eq!(fields, expected.map(|f| format!("limb_table.{f}")));
+        assert_eq!(fields, expected);
     }
 }

@@ -2,12 +2,17 @@
 //!
 //! [`physical`] is the default. What a model draws is judged by [`super::reference`]; its shader is `shaders/pass/sky_<model>.wgsl`.
 
+pub mod limb_table;
 pub mod physical;
+pub mod view_space;
+pub mod view_table;
 
 use super::Medium;
 use serde::{Deserialize, Serialize};
 
+pub use limb_table::LimbTable;
 pub use physical::Physical;
+pub use view_table::ViewTable;
 
 /// How the light of an air is found.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -15,6 +20,10 @@ pub use physical::Physical;
 pub enum Model {
     /// Single scattering exact along the ray, higher orders from tables.
     Physical(Physical),
+    /// A 2-D table by two cosines at the shell's top, laid over additively.
+    LimbTable(LimbTable),
+    /// A 3-D table of single scattering by height, view and sun.
+    ViewTable(ViewTable),
 }
 
 impl Default for Model {

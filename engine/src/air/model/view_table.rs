@@ -185,11 +185,11 @@ impl ViewTable {
             ("ambient_samples", self.ambient_samples, 2.0, 128.0),
         ];
         for (key, found, min, max) in ranges {
-            RangeError::check(&mut e, &format!("view_table.{key}"), f64::from(found), min, max);
+            RangeError::check(&mut e, &key, f64::from(found), min, max);
         }
         if self.view_size % 2 != 0 {
             let (found, expected) = (f64::from(self.view_size), "an even number".into());
-            e.push(RangeError { field: "view_table.view_size".into(), found, expected });
+            e.push(RangeError { field: "view_size".into(), found, expected });
         }
         e
     }
