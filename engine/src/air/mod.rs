@@ -1,10 +1,12 @@
 //! Air: the layers of one atmosphere, how thick it is at an altitude, and how light crosses it.
 //!
 //! [`density`] is what drags (temperature, pressure, density); [`medium`] is what one sees (coefficients of scattering and
-//! absorption); [`reference`] integrates light through a medium in f64, slowly, and judges the tables and the shaders.
+//! absorption); [`reference`] integrates light through a medium in f64, slowly, and judges the tables and the shaders; [`model`] holds
+//! the ways in which a picture may find it.
 
 pub mod density;
 pub mod medium;
+pub mod model;
 pub mod reference;
 mod us76;
 
