@@ -80,7 +80,7 @@ pub struct Sight {
     pub bottom_m: f64,
     /// Height of the shell above it, m.
     pub top_m: f64,
-    /// Distance to what is drawn, m; none where nothing is.
+    /// Distance to what is drawn, m; none where nothing is: the datum then stands for the ground.
     pub surface_m: Option<f64>,
 }
 
@@ -142,7 +142,7 @@ impl Gradient {
             radiance: texel.truncate() * (alpha * f64::from(self.brightness) / PI),
             transmittance: DVec3::splat(1.0 - f64::from(self.opacity) * alpha),
         };
-        let Some(surface_m) = sight.surface_m.filter(|s| *s < chord.exit_m) else { return Some(shell) };
+        let Some(surface_m) = sight.surface_m.or(chord.ground_m).filter(|s| *s < chord.exit_m) else { return Some(shell) };
         let point = at(surface_m);
         let low = (1.0 - (point.length() - sight.bottom_m) / sight.top_m).clamp(0.0, 1.0);
         let passed = (1.0 - low) * ((surface_m - chord.start_m) / (chord.exit_m - chord.start_m).max(1e-9)).clamp(0.0, 1.0);
