@@ -40,7 +40,7 @@ fn body(id: u16, centre_m: DVec3, radius_m: f64, albedo: Vec3, sun_m: DVec3) -> 
         occluders: Vec::new(),
         albedo,
         surface: Surface::Smooth,
-        air: (id == 3).then(earth_air),
+        air: (id == 3).then(|| earth_air().into()),
     }
 }
 

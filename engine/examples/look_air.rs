@@ -72,7 +72,7 @@ fn scene(size: [u32; 2], altitude_m: f64, sun_deg: f64, azimuth_deg: f64, pitch_
         occluders: Vec::new(),
         albedo: Vec3::new(0.08, 0.11, 0.12),
         surface: Surface::Smooth,
-        air: Some(earth_air()),
+        air: Some(earth_air().into()),
     };
     Snapshot {
         camera: Camera {

@@ -132,7 +132,7 @@ fn scene(shot: &Shot, relief: &Arc<Relief>, size: [u32; 2], moon: bool) -> (Snap
         occluders: Vec::new(),
         albedo: if moon { Vec3::new(0.135, 0.125, 0.11) } else { Vec3::new(0.1, 0.12, 0.06) },
         surface: Surface::Tiles(set),
-        air: (!moon).then(air),
+        air: (!moon).then(|| air().into()),
     };
     let snapshot = Snapshot {
         camera,

@@ -1,8 +1,7 @@
 //! Air: the layers of one atmosphere, how thick it is at an altitude, and how light crosses it.
 //!
 //! [`density`] is what drags (temperature, pressure, density); [`medium`] is what one sees (coefficients of scattering and
-//! absorption); [`reference`] integrates light through a medium in f64, slowly, and judges the tables and the shaders; [`model`] holds
-//! the ways in which a picture may find it.
+//! absorption); [`model`] is how the picture finds the light of it; [`reference`] integrates light through a medium in f64, slowly, and judges the tables and the shaders.
 
 pub mod density;
 pub mod medium;
@@ -12,6 +11,7 @@ mod us76;
 
 pub use density::{Column, ColumnSpec};
 pub use medium::{Layer, Medium, MediumSpec, Phase, Profile};
+pub use model::{Air, Model};
 
 /// A value outside of what makes sense. The caller adds the file and the line.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

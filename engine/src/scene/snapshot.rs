@@ -4,7 +4,7 @@
 //! Not here: how a snapshot is made from a World (`game::view::snapshot`), nor anything of wgpu.
 
 use super::Camera;
-use crate::air::Medium;
+use crate::air::Air;
 use crate::terrain::TileSet;
 use glam::{Quat, Vec3};
 
@@ -51,6 +51,8 @@ pub enum Surface {
     Smooth,
     /// Terrain tiles chosen for this camera.
     Tiles(TileSet),
+    /// None at all: a bank of fog or a nebula, of which only the shell of its air is seen.
+    Nothing,
 }
 
 /// A planet or moon.
@@ -81,7 +83,7 @@ pub struct Body {
     /// The solid (or cloud-top) surface.
     pub surface: Surface,
     /// Its air, if it has any. The key of the tables is `id`; they are remade when this value changes.
-    pub air: Option<Medium>,
+    pub air: Option<Air>,
 }
 
 /// A ship.

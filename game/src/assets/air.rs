@@ -96,7 +96,9 @@ fn read_layer(r: Reader<'_>) -> Layer {
 
 fn read_profile(r: Reader<'_>) -> Profile {
     let metres = |key| narrow(r.number(key, ANY));
-    let profile = match r.choice("kind", &["exponential", "tent"]) {
+    let profile = match r.choice("kind", &["exponential", "tent", "constant", "table"]) {
+        "constant" => Profile::Constant { bottom_m: metres("bottom_m"), top_m: metres("top_m") },
+        "table" => Profile::Table { altitude_m: list(&r, "altitude_m"), density: list(&r, "density") },
         "tent" => Profile::Tent { bottom_m: metres("bottom_m"), peak_m: metres("peak_m"), top_m: metres("top_m") },
         _ => Profile::Exponential { scale_height_m: metres("scale_height_m") },
     };
@@ -104,8 +106,16 @@ fn read_profile(r: Reader<'_>) -> Profile {
     profile
 }
 
+fn list(r: &Reader<'_>, key: &'static str) -> Vec<f32> {
+    r.column(key).into_iter().map(narrow).collect()
+}
+
 fn read_phase(r: Reader<'_>) -> Phase {
-    let phase = match r.choice("kind", &["rayleigh", "cornette_shanks"]) {
+    let phase = match r.choice("kind", &["rayleigh", "henyey_greenstein", "cornette_shanks", "elek_rayleigh", "isotropic", "table"]) {
+        "henyey_greenstein" => Phase::HenyeyGreenstein { g: narrow(r.number("g", ANY)) },
+        "elek_rayleigh" => Phase::ElekRayleigh,
+        "isotropic" => Phase::Isotropic,
+        "table" => Phase::Table { angle_deg: list(&r, "angle_deg"), value: list(&r, "value") },
         "cornette_shanks" => Phase::CornetteShanks { g: narrow(r.number("g", ANY)) },
         _ => Phase::Rayleigh,
     };

@@ -135,6 +135,17 @@ impl<'a> Reader<'a> {
         }
     }
 
+    /// Any count of numbers in a list.
+    pub fn column(&self, key: &'static str) -> Vec<f64> {
+        let expected = "a list of numbers";
+        let Some(node) = self.need(key, expected) else { return Vec::new() };
+        let Data::Array(list) = &node.data else {
+            self.mismatch(key, node, expected);
+            return Vec::new();
+        };
+        list.iter().enumerate().map(|(i, item)| self.checked(&format!("{key}[{i}]"), item, &ANY)).collect()
+    }
+
     /// A string that must be there and not be empty.
     pub fn text(&self, key: &'static str) -> String {
         let Some(node) = self.need(key, "a string") else { return String::new() };

@@ -305,7 +305,7 @@ fn build(
         figure: s.figure.clone(),
         albedo: s.albedo,
         intensity_cd: s.intensity_cd,
-        air: s.air.clone().and_then(|a| Some(Air { column: a.column?, medium: a.medium? })),
+        air: s.air.clone().and_then(|a| Some(Air { column: a.column?, look: a.medium?.into() })),
         relief,
         relief_max: s.relief.as_ref().map_or(1.0, |(_, max)| *max),
     });

@@ -243,7 +243,7 @@ malformed! {
     unknown_column: ROCK_FILE, "kind = \"hydrostatic\"" => "kind = \"us67\"", line 21, ["did you mean `us76`?"];
     impossible_air: ROCK_FILE, "heat_capacity_ratio = 1.4" => "heat_capacity_ratio = 14.0", line 26, ["heat_capacity_ratio", "from 1 to 1.7"];
     lapse_below_zero_kelvin: ROCK_FILE, "to_altitude_m = 10000.0" => "to_altitude_m = 90000.0", line 27, ["lapse[0]", "from 1 to"];
-    phase_out_of_range: ROCK_FILE, "g = 0.8" => "g = 1.8", line 35, ["layers[0].phase.g", "0.98"];
+    phase_out_of_range: ROCK_FILE, "g = 0.8" => "g = 1.8", line 35, ["layers[0].phase.g", "0.99"];
     unknown_profile: ROCK_FILE, "kind = \"exponential\"" => "kind = \"exponetial\"", line 34, ["did you mean `exponential`?"];
     no_layers: ROCK_FILE, "[[air.medium.layers]]" => "[[air.medium.layer]]", line 31, ["did you mean `layers`?"];
     medium_without_column: ROCK_FILE, "[air.column]" => "[air.colum]", line 20, ["missing key `column` in [air]", "did you mean `column`?"];

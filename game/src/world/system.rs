@@ -3,7 +3,6 @@
 use super::eclipse::almanac::Almanac;
 use super::ship::local::air_top_m;
 use super::ship::warp::floor_m;
-use engine::air::Medium;
 use engine::air::density::Column;
 use engine::orbit::eclipse::Shape;
 use engine::orbit::ephemeris::Ephemeris;
@@ -18,13 +17,13 @@ use engine::time::SimTime;
 use glam::Vec3;
 use std::sync::Arc;
 
-/// The air of a body: what drags (`column`) and what one sees (`medium`), described apart.
+/// The air of a body: what drags (`column`) and what one sees (`look`), described apart.
 #[derive(Clone, Debug)]
 pub struct Air {
     /// Temperature, pressure and density against altitude.
     pub column: Column,
-    /// Optical layers.
-    pub medium: Medium,
+    /// Optical layers, and the model that draws them.
+    pub look: engine::air::Air,
 }
 
 /// A body of the system.

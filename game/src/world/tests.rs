@@ -23,7 +23,7 @@ const START: SimTime = SimTime::from_ticks(1_000_000);
 fn lone_body(gm: f64, radius_m: f64, day_s: f64, air: Option<Column>) -> Arc<System> {
     let spin = Spin { pole_dec_rad: [90.0 * DEG, 0.0], meridian_rad: [0.3, core::f64::consts::TAU * 86_400.0 / day_s], ..Spin::default() };
     let medium = Medium { bottom_radius_m: radius_m, top_altitude_m: 1e5, ground_albedo: Vec3::splat(0.1), layers: Vec::new() };
-    let body = rock(gm, radius_m, spin, air.map(|column| Air { column, medium }));
+    let body = rock(gm, radius_m, spin, air.map(|column| Air { column, look: medium.into() }));
     Arc::new(System::new("test".into(), "Test".into(), vec![body], Ephemeris::default(), String::new()))
 }
 

@@ -89,7 +89,7 @@ impl AirBaker {
     /// The slot of each body of the scene that has air; new and changed media wait for [`AirBaker::record`].
     pub fn assign(&mut self, scene: &Snapshot) -> Vec<Option<u32>> {
         self.clock += 1;
-        scene.bodies.iter().map(|body| body.air.as_ref().and_then(|medium| self.slot_of(body.id, medium))).collect()
+        scene.bodies.iter().map(|body| body.air.as_ref().and_then(|air| self.slot_of(body.id, &air.medium))).collect()
     }
 
     #[allow(clippy::cast_possible_truncation)]

@@ -1,80 +1,20 @@
 //! The medium: the optical layers of one atmosphere. Coefficients in m⁻¹ per linear sRGB channel.
 //!
 //! Each layer scatters and absorbs in proportion to its density profile. [`MediumSpec`] is what a file holds; a body's radius makes
-//! a [`Medium`] of it. Here too are the two functions that light needs, in f64: density and phase. Their GPU twins are in
-//! `shaders/lib/medium.wgsl` and `shaders/lib/phase.wgsl`.
+//! a [`Medium`] of it. [`profile`] is density against altitude, [`phase`] where scattered light goes; both in f64.
+
+pub mod phase;
+pub mod profile;
 
 use super::RangeError;
-use core::f64::consts::PI;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// Density of a layer relative to its coefficient, against altitude above the datum.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
-pub enum Profile {
-    /// `exp(−h / scale_height)`.
-    Exponential {
-        /// Scale height, m.
-        scale_height_m: f32,
-    },
-    /// A triangle: 0 at `bottom`, 1 at `peak`, 0 at `top`.
-    Tent {
-        /// Altitude where it begins, m.
-        bottom_m: f32,
-        /// Altitude of full density, m.
-        peak_m: f32,
-        /// Altitude where it ends, m.
-        top_m: f32,
-    },
-}
-
-impl Profile {
-    /// Relative density at an altitude above the datum, m. Below `−FLOOR_M` it no longer grows.
-    pub fn density(&self, altitude_m: f64) -> f64 {
-        let h = altitude_m.max(-Medium::FLOOR_M);
-        match *self {
-            Self::Exponential { scale_height_m } => libm::exp(-h / f64::from(scale_height_m)),
-            Self::Tent { bottom_m, peak_m, top_m } => {
-                let rise = (h - f64::from(bottom_m)) / f64::from(peak_m - bottom_m);
-                let fall = (f64::from(top_m) - h) / f64::from(top_m - peak_m);
-                rise.min(fall).max(0.0)
-            }
-        }
-    }
-}
-
-/// Phase function of a layer.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
-pub enum Phase {
-    /// 3/(16π)(1 + cos²θ).
-    Rayleigh,
-    /// Cornette–Shanks with asymmetry g.
-    CornetteShanks {
-        /// Asymmetry, −1 < g < 1.
-        g: f32,
-    },
-}
-
-impl Phase {
-    /// Value at the cosine of the scattering angle, sr⁻¹; its integral over the sphere is 1.
-    pub fn value(&self, cos_theta: f64) -> f64 {
-        let c2 = cos_theta * cos_theta;
-        match *self {
-            Self::Rayleigh => 3.0 / (16.0 * PI) * (1.0 + c2),
-            // [Cornette & Shanks 1992, eq. 8]
-            Self::CornetteShanks { g } => {
-                let g = f64::from(g);
-                let d = (1.0 + g * g - 2.0 * g * cos_theta).max(1e-9);
-                3.0 / (8.0 * PI) * (1.0 - g * g) * (1.0 + c2) / ((2.0 + g * g) * d * d.sqrt())
-            }
-        }
-    }
-}
+pub use phase::Phase;
+pub use profile::Profile;
 
 /// One layer.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Layer {
     /// Scattering coefficient at density 1, m⁻¹.
@@ -96,7 +36,7 @@ pub struct Medium {
     pub top_altitude_m: f64,
     /// Lambert albedo of the ground that the tables assume.
     pub ground_albedo: Vec3,
-    /// The layers, at most [`Medium::MAX_LAYERS`].
+    /// The layers, any number; none is a vacuum.
     pub layers: Vec<Layer>,
 }
 
@@ -108,23 +48,22 @@ pub struct MediumSpec {
     pub top_altitude_m: f64,
     /// Lambert albedo of the ground that lights the air from below, 0 … 1 per channel.
     pub ground_albedo: Vec3,
-    /// One to four layers.
+    /// The layers, any number.
     pub layers: Vec<Layer>,
 }
 
 impl MediumSpec {
     /// The medium around a datum sphere of this radius, or everything that is out of range.
     pub fn build(&self, bottom_radius_m: f64) -> Result<Medium, Vec<RangeError>> {
-        let medium =
+        let mut medium =
             Medium { bottom_radius_m, top_altitude_m: self.top_altitude_m, ground_albedo: self.ground_albedo, layers: self.layers.clone() };
         let errors = medium.validate();
+        medium.layers.iter_mut().for_each(|l| l.phase = l.phase.normalised());
         if errors.is_empty() { Ok(medium) } else { Err(errors) }
     }
 }
 
 impl Medium {
-    /// Layers a medium may have.
-    pub const MAX_LAYERS: usize = 4;
     /// Depth below the datum to which density goes on growing, m: dry basins lie lower than any sea, but not by more.
     pub const FLOOR_M: f64 = 10_000.0;
 
@@ -139,28 +78,11 @@ impl Medium {
             }
         };
         channels(&mut e, "ground_albedo", self.ground_albedo, 1.0);
-        if self.layers.is_empty() || self.layers.len() > Self::MAX_LAYERS {
-            let expected = format!("1 to {} layers", Self::MAX_LAYERS);
-            e.push(RangeError { field: "layers".into(), found: self.layers.len() as f64, expected });
-        }
         for (i, layer) in self.layers.iter().enumerate() {
             channels(&mut e, &format!("layers[{i}].scattering_per_m"), layer.scattering_per_m, 1.0);
             channels(&mut e, &format!("layers[{i}].absorption_per_m"), layer.absorption_per_m, 1.0);
-            match layer.profile {
-                Profile::Exponential { scale_height_m } => {
-                    let key = format!("layers[{i}].profile.scale_height_m");
-                    RangeError::check(&mut e, &key, f64::from(scale_height_m), 10.0, 1.0e6);
-                }
-                Profile::Tent { bottom_m, peak_m, top_m } => {
-                    let (bottom, peak) = (f64::from(bottom_m), f64::from(peak_m));
-                    RangeError::check(&mut e, &format!("layers[{i}].profile.bottom_m"), bottom, -Self::FLOOR_M, 1.0e7);
-                    RangeError::check(&mut e, &format!("layers[{i}].profile.peak_m"), peak, bottom + 1.0, 1.0e7);
-                    RangeError::check(&mut e, &format!("layers[{i}].profile.top_m"), f64::from(top_m), peak + 1.0, 1.0e7);
-                }
-            }
-            if let Phase::CornetteShanks { g } = layer.phase {
-                RangeError::check(&mut e, &format!("layers[{i}].phase.g"), f64::from(g), -0.98, 0.98);
-            }
+            layer.profile.check(&mut e, &format!("layers[{i}].profile"));
+            layer.phase.check(&mut e, &format!("layers[{i}].phase"));
         }
         e
     }
@@ -201,25 +123,6 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn phase_functions_hold_all_the_light() {
-        for phase in [Phase::Rayleigh, Phase::CornetteShanks { g: 0.8 }, Phase::CornetteShanks { g: -0.4 }] {
-            let n = 20_000;
-            let sum: f64 = (0..n).map(|i| phase.value((f64::from(i) + 0.5) / f64::from(n) * 2.0 - 1.0)).sum();
-            let integral = sum * 2.0 / f64::from(n) * 2.0 * PI;
-            assert!((integral - 1.0).abs() < 1e-6, "{phase:?}: {integral}");
-        }
-    }
-
-    #[test]
-    fn profiles_meet_their_named_points() {
-        let tent = Profile::Tent { bottom_m: 1.0e4, peak_m: 2.5e4, top_m: 4.0e4 };
-        assert_eq!([9.0e3, 1.0e4, 1.75e4, 2.5e4, 4.0e4, 5.0e4].map(|h| tent.density(h)), [0.0, 0.0, 0.5, 1.0, 0.0, 0.0]);
-        let exponential = Profile::Exponential { scale_height_m: 8000.0 };
-        assert!((exponential.density(8000.0) - libm::exp(-1.0)).abs() < 1e-15);
-        assert_eq!(exponential.density(-1.0e4), exponential.density(-1.0e9));
-    }
-
-    #[test]
     fn reports_all_bad_values_at_once() {
         let good = earth();
         assert!(good.validate().is_empty());
@@ -231,7 +134,32 @@ pub(crate) mod tests {
         let fields: Vec<_> = spec.build(6.36e6).unwrap_err().into_iter().map(|e| e.field).collect();
         let expected = ["top_altitude_m", "layers[0].scattering_per_m[1]", "layers[1].phase.g", "layers[2].profile.peak_m"];
         assert_eq!(fields, expected);
-        let empty = MediumSpec { top_altitude_m: 1e5, ground_albedo: Vec3::ZERO, layers: Vec::new() };
-        assert_eq!(empty.build(6.36e6).unwrap_err()[0].field, "layers");
+    }
+
+    #[test]
+    fn any_number_of_layers_will_do() {
+        let none = MediumSpec { top_altitude_m: 1e5, ground_albedo: Vec3::ZERO, layers: Vec::new() };
+        assert!(none.build(6.36e6).is_ok());
+        let many = MediumSpec { layers: earth().layers.into_iter().cycle().take(40).collect(), ..none };
+        assert_eq!(many.build(6.36e6).unwrap().layers.len(), 40);
+    }
+
+    #[test]
+    fn tables_are_checked_point_by_point_and_scaled() {
+        let layer = |altitude_m: &[f32], density: &[f32], angle_deg: &[f32], value: &[f32]| Layer {
+            scattering_per_m: Vec3::splat(1e-5),
+            absorption_per_m: Vec3::ZERO,
+            profile: Profile::Table { altitude_m: altitude_m.to_vec(), density: density.to_vec() },
+            phase: Phase::Table { angle_deg: angle_deg.to_vec(), value: value.to_vec() },
+        };
+        let build = |layer| MediumSpec { top_altitude_m: 1e5, ground_albedo: Vec3::ZERO, layers: vec![layer] }.build(6.36e6);
+        let medium = build(layer(&[0.0, 5.0], &[1.0, 0.0], &[0.0, 180.0], &[3.0, 3.0])).unwrap();
+        assert!((medium.layers[0].phase.value(0.3) * 4.0 * core::f64::consts::PI - 1.0).abs() < 1e-6);
+        let fields = |layer| -> Vec<String> { build(layer).unwrap_err().into_iter().map(|e| e.field).collect() };
+        let wrong = fields(layer(&[0.0, 0.0], &[1.0, -1.0], &[0.0, 190.0], &[f32::NAN, 1.0]));
+        let expected = ["profile.altitude_m[1]", "profile.density[1]", "phase.angle_deg[1]", "phase.value[0]"];
+        assert_eq!(wrong, expected.map(|f| format!("layers[0].{f}")));
+        assert_eq!(fields(layer(&[0.0], &[1.0], &[0.0, 90.0], &[1.0])), ["layers[0].profile.altitude_m", "layers[0].phase.value"]);
+        assert_eq!(fields(layer(&[0.0, 1.0], &[1.0, 1.0], &[0.0, 90.0], &[0.0, 0.0])), ["layers[0].phase.value"]);
     }
 }
