@@ -31,7 +31,7 @@ use wgpu::{BindGroupEntry, BindingResource};
 pub const STEPS: u32 = 24;
 
 /// How one model of air draws. Bind groups: 0 and 1 as in [`crate::render::shared`], 2 the picture (opaque, depth, `Sky`), 3 its own.
-pub trait Painter {
+pub trait Painter: Send {
     /// What its shader is made from.
     fn kind(&self) -> &PainterKind;
     /// The model's numbers for a body, in the order that its shader expects.
