@@ -80,7 +80,7 @@ pub enum Error {
         help: String,
     },
     /// A body without air.
-    #[error("{0} has no air: it has no [air] table")]
+    #[error("{0} has no air that drags: it has no atmosphere.toml with a [physics] table")]
     NoAir(String),
     /// An answer cannot be written.
     #[error("{}: cannot be written: {source}", path.display())]

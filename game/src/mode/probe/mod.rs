@@ -27,7 +27,7 @@ pub fn run(probe: &Probe) -> Result<(), Error> {
             let system = system(&args.common)?;
             let body = system.body(find(&system, &args.body)?);
             let Some(air) = &body.air else { return Err(Error::NoAir(args.body.clone())) };
-            answer(args.common.out.as_deref(), |out| air::write(&air.column, &args.altitude_m, out))
+            answer(args.common.out.as_deref(), |out| air::write(air, &args.altitude_m, out))
         }
         Probe::Height(args) => {
             let points = height::points(&args.points)?;
