@@ -306,7 +306,10 @@ fn what_is_listed_and_not_there_is_named() {
     let dir = assets();
     put(dir.path(), SYSTEM_FILE, b"name = \"T\"\nbodies = [\"sun\", \"rokc\", \"moon\"]\n");
     let message = load_system(dir.path(), &[], "t").unwrap_err().text();
-    assert!(message.contains("system.toml:2:18") && message.contains("no body \"rokc\"") && message.contains("did you mean `rock`?"), "{message}");
+    assert!(
+        message.contains("system.toml:2:18") && message.contains("no body \"rokc\"") && message.contains("did you mean `rock`?"),
+        "{message}"
+    );
     let message = load_system(dir.path(), &[], "tt").unwrap_err().text();
     assert!(message.contains("did you mean `t`?"), "{message}");
     let message = Assets::new(dir.path().to_owned(), Vec::new()).ship("toch").unwrap_err().text();
@@ -396,7 +399,9 @@ fn a_patch_changes_a_list_by_the_names_in_it() {
     let mods = [one.path().to_owned()];
     let look = |patch: &str| {
         put(one.path(), "bodies/rock/atmosphere.patch.toml", patch.as_bytes());
-        load_system(dir.path(), &mods, "t").map(|s| s.body(s.find("rock").unwrap()).look.clone().unwrap().medium.layers).map_err(|e| e.text())
+        load_system(dir.path(), &mods, "t")
+            .map(|s| s.body(s.find("rock").unwrap()).look.clone().unwrap().medium.layers)
+            .map_err(|e| e.text())
     };
     let blue = look("[layers.gas]\nscattering_per_m = [1e-6, 2e-6, 9e-6]\n").unwrap();
     assert_eq!((blue.len(), blue[0].scattering_per_m), (1, glam::Vec3::new(1e-6, 2e-6, 9e-6)));
@@ -405,7 +410,10 @@ fn a_patch_changes_a_list_by_the_names_in_it() {
     assert_eq!(look(fog).unwrap().len(), 2);
     assert_eq!(look(&format!("layers.remove = [\"gas\"]\n{fog}")).unwrap().len(), 1);
     let wrong = look("[layers.gsa]\nscattering_per_m = [1e-6, 2e-6, 9e-6]\n").unwrap_err();
-    assert!(wrong.contains("atmosphere.patch.toml:1:9") && wrong.contains("no item named `gsa`") && wrong.contains("did you mean `gas`?"), "{wrong}");
+    assert!(
+        wrong.contains("atmosphere.patch.toml:1:9") && wrong.contains("no item named `gsa`") && wrong.contains("did you mean `gas`?"),
+        "{wrong}"
+    );
     let wrong = look("layers.remove = [\"sag\"]\n").unwrap_err();
     assert!(wrong.contains("atmosphere.patch.toml:1:18") && wrong.contains("no item named `sag`"), "{wrong}");
 }

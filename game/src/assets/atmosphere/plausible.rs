@@ -55,7 +55,11 @@ pub fn suspicions(tree: &Node, look: &Air, column: Option<&Column>, gravity_m_s2
         }
     }
     if total.max_element() > ABSURD_DEPTH {
-        tell("layers", format!("vertical optical depth {:.3} of all layers: no light comes through", total.max_element()), "Venus's clouds have about 30");
+        tell(
+            "layers",
+            format!("vertical optical depth {:.3} of all layers: no light comes through", total.max_element()),
+            "Venus's clouds have about 30",
+        );
     }
     found
 }
@@ -80,7 +84,10 @@ fn hard_edge(layer: &Layer, i: usize, radius_m: f64, top_m: f64, tell: &mut impl
     if depth > EDGE_DEPTH {
         tell(
             "top_altitude_m",
-            format!("a hard edge: layer {i} still has {:.2} % of its density at the top (grazing optical depth {depth:.2})", 100.0 * density),
+            format!(
+                "a hard edge: layer {i} still has {:.2} % of its density at the top (grazing optical depth {depth:.2})",
+                100.0 * density
+            ),
             "raise the top, or lower the scale height: an exponential layer wants a top of about 12 scale heights",
         );
     }
@@ -98,7 +105,10 @@ fn wrong_scale(layer: &Layer, i: usize, column: &Column, gravity_m_s2: f64, tell
     if !(1.0 / SCALE_FACTOR..=SCALE_FACTOR).contains(&ratio) {
         tell(
             &format!("layers[{i}].profile.scale_height_m"),
-            format!("scale height {scale_height_m} m, but the gas of [physics] has p/(ρ g) = {:.0} m at the datum: p ≠ ρ R T / M for one of them", narrow(hydrostatic)),
+            format!(
+                "scale height {scale_height_m} m, but the gas of [physics] has p/(ρ g) = {:.0} m at the datum: p ≠ ρ R T / M for one of them",
+                narrow(hydrostatic)
+            ),
             "molecules and the gas that drags are one: give both the same temperature and molar mass",
         );
     }
