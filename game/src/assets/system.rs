@@ -233,9 +233,14 @@ fn tell_orphans(overlay: &Overlay, faults: &Faults) {
             for patch in overlay.orphans(&relative) {
                 let fault = match &there {
                     Some(above) => Fault::file(&patch, format!("it changes nothing: {} lies above it and replaces all", above.display()))
-                        .help(Some("expected a patch in the same mod or in a later one: mods lie in the order in which they are named".to_owned())),
-                    None => Fault::file(&patch, format!("there is no `{relative}` that it could change: expected one in the assets or in a mod"))
-                        .help(nearest(&body, known.iter().map(String::as_str))),
+                        .help(Some(
+                            "expected a patch in the same mod or in a later one: mods lie in the order in which they are named".to_owned(),
+                        )),
+                    None => Fault::file(
+                        &patch,
+                        format!("there is no `{relative}` that it could change: expected one in the assets or in a mod"),
+                    )
+                    .help(nearest(&body, known.iter().map(String::as_str))),
                 };
                 faults.borrow_mut().push(fault);
             }

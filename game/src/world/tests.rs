@@ -92,6 +92,31 @@ fn orbiting(system: &Arc<System>, altitude_m: f64, inclination: f64, slower: f64
     moving(system, torch(), altitude_m, DVec3::new(0.0, v * c, v * s))
 }
 
+#[test]
+fn sunlight_pushes_a_sail_as_its_closed_form_says() {
+    use engine::orbit::gravity::radiation::{SUN_AT_1_AU_W_M2, cannonball};
+    use engine::units::AU;
+    let gm = 1.327_124_4e20;
+    let mut bodies = vec![rock(gm, 6.957e8, Spin::default(), None)];
+    bodies[0].soi_radius_m = f64::INFINITY;
+    bodies[0].intensity_cd = Vec3::splat(engine::space::relative::narrow(1.28e5 * AU * AU));
+    let orbit =
+        Orbit { parent: None, gm_m3_s2: gm, path: EphemerisPath::Barycentric { epoch: START, state: State::default(), of_system: false } };
+    let system = Arc::new(System::new("one".into(), "One".into(), bodies, Ephemeris::new(vec![orbit]).unwrap(), String::new()));
+    let spec = ShipSpec { sunlight: Some(super::ship::spec::Sunlight { area_m2: 2.0e5, reflectivity: 1.8 }), ..torch() };
+    let mut world = moving(&system, spec, AU, DVec3::new(0.0, 29.8e3, 0.0));
+    let (from, began, mass_kg) = (world.rigid().state, world.time, world.ship.mass_kg());
+    world.enter_path();
+    world.warp_asked = 8;
+    idle(&mut world, 4_000);
+    // Light goes with the inverse square as gravity does: a conic about less mass.
+    let push = cannonball(DVec3::X * AU, 2.0e5 / mass_kg, 1.8, SUN_AT_1_AU_W_M2, 1.0).x * AU * AU;
+    let on = |gm: f64| engine::orbit::kepler::propagate(gm, &from, world.time.since(began)).position;
+    let moved = (world.rigid().state.position - on(gm)).length();
+    let missed = (world.rigid().state.position - on(gm - push)).length();
+    assert!(moved > 1.0e7 && missed < 2e-4 * moved, "moved {moved} m, {missed} m from the conic");
+}
+
 fn act(world: &mut World, action: Action) {
     world.tick(&Commands { actions: vec![action], ..Commands::default() });
 }

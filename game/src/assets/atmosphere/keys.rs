@@ -134,7 +134,11 @@ const THICKNESS: &[Field] = &[
     may("brightness", Kind::Number(Span::log(0.0, 1000.0)), "of a lit way of one scale; 1 is a white surface that faces the sun"),
     may("shadow_share", Kind::Number(Span::linear(0.0, 1.0)), "how bright shadowed air is beside lit air"),
     may("scale_m", Kind::Number(Span::log(1.0, 1.0e15)), "width of air that counts as one; left out: the longest way in the shell"),
-    may("shadow", Kind::Choice(&[("cone", "the umbra"), ("cylinder", "as wide as the body all along")]), "the volume that counts as shadowed"),
+    may(
+        "shadow",
+        Kind::Choice(&[("cone", "the umbra"), ("cylinder", "as wide as the body all along")]),
+        "the volume that counts as shadowed",
+    ),
     may("opacity", Kind::Number(Span::log(0.0, 1000.0)), "optical depth of a way of one scale for what lies behind; 0 only adds light"),
 ];
 

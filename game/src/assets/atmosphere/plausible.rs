@@ -9,6 +9,8 @@ use glam::DVec3;
 
 /// Vertical optical depth beyond which even the sun is nowhere to be seen from the ground: Venus's clouds have 30.
 const ABSURD_DEPTH: f64 = 100.0;
+/// Vertical optical depth that a layer may well have: a thousand times as much is a value per kilometre.
+const THICK_DEPTH: f64 = 5.0;
 /// Optical depth of a grazing ray at the top beyond which the air visibly ends there.
 const EDGE_DEPTH: f64 = 0.01;
 /// Factor between a molecular layer's scale height and that of the gas that drags.
@@ -30,7 +32,7 @@ pub fn suspicions(tree: &Node, look: &Air, column: Option<&Column>, gravity_m_s2
         let depth = extinction * column_m;
         let strongest = if depth_of(layer.absorption_per_m) > depth_of(layer.scattering_per_m) { "absorption" } else { "scattering" };
         let place = format!("layers[{i}].{strongest}_per_m");
-        if depth.max_element() > ABSURD_DEPTH && depth.max_element() < 1e4 * ABSURD_DEPTH {
+        if (ABSURD_DEPTH..1000.0 * THICK_DEPTH).contains(&depth.max_element()) {
             tell(
                 &place,
                 format!("vertical optical depth {:.3} of this layer: the coefficients look like values per kilometre", depth.max_element()),
@@ -53,7 +55,11 @@ pub fn suspicions(tree: &Node, look: &Air, column: Option<&Column>, gravity_m_s2
         }
     }
     if total.max_element() > ABSURD_DEPTH {
-        tell("layers", format!("vertical optical depth {:.3} of all layers: no light comes through", total.max_element()), "Venus's clouds have about 30");
+        tell(
+            "layers",
+            format!("vertical optical depth {:.3} of all layers: no light comes through", total.max_element()),
+            "Venus's clouds have about 30",
+        );
     }
     found
 }
@@ -78,7 +84,10 @@ fn hard_edge(layer: &Layer, i: usize, radius_m: f64, top_m: f64, tell: &mut impl
     if depth > EDGE_DEPTH {
         tell(
             "top_altitude_m",
-            format!("a hard edge: layer {i} still has {:.2} % of its density at the top (grazing optical depth {depth:.2})", 100.0 * density),
+            format!(
+                "a hard edge: layer {i} still has {:.2} % of its density at the top (grazing optical depth {depth:.2})",
+                100.0 * density
+            ),
             "raise the top, or lower the scale height: an exponential layer wants a top of about 12 scale heights",
         );
     }
@@ -96,7 +105,10 @@ fn wrong_scale(layer: &Layer, i: usize, column: &Column, gravity_m_s2: f64, tell
     if !(1.0 / SCALE_FACTOR..=SCALE_FACTOR).contains(&ratio) {
         tell(
             &format!("layers[{i}].profile.scale_height_m"),
-            format!("scale height {scale_height_m} m, but the gas of [physics] has p/(ρ g) = {:.0} m at the datum: p ≠ ρ R T / M for one of them", narrow(hydrostatic)),
+            format!(
+                "scale height {scale_height_m} m, but the gas of [physics] has p/(ρ g) = {:.0} m at the datum: p ≠ ρ R T / M for one of them",
+                narrow(hydrostatic)
+            ),
             "molecules and the gas that drags are one: give both the same temperature and molar mass",
         );
     }

@@ -9,7 +9,9 @@
 //! A new model: a variant of [`Model`], a file here with its painter, its place in [`PAINTERS`], [`painter_of`] and [`model_name`].
 
 pub mod choose;
+pub mod gradient;
 pub mod physical;
+pub mod thickness;
 
 use crate::air::{Air, Model};
 use crate::gpu::buffer::Uniform;
@@ -85,12 +87,14 @@ pub struct Parts<'a> {
 type Make = fn(&Parts<'_>) -> Result<Box<dyn Painter>, RenderError>;
 
 /// The painters, in the order of [`painter_of`].
-const PAINTERS: [Make; 1] = [physical::make];
+const PAINTERS: [Make; 3] = [physical::make, thickness::make, gradient::make];
 
 /// Place of a model's painter in [`PAINTERS`].
 const fn painter_of(model: &Model) -> usize {
     match model {
         Model::Physical(_) => 0,
+        Model::Thickness(_) => 1,
+        Model::Gradient(_) => 2,
     }
 }
 
@@ -98,6 +102,8 @@ const fn painter_of(model: &Model) -> usize {
 pub const fn model_name(model: &Model) -> &'static str {
     match model {
         Model::Physical(_) => "physical",
+        Model::Thickness(_) => "thickness",
+        Model::Gradient(_) => "gradient",
     }
 }
 
