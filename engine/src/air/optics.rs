@@ -38,6 +38,7 @@
 //! in Real-Time", thesis, Charles University in Prague. [Ångström 1929] Geografiska Annaler 11.
 
 use super::RangeError;
+use crate::light::spectrum::linear_at;
 use crate::units::NM;
 use core::f64::consts::PI;
 
@@ -347,18 +348,6 @@ impl Aerosol {
         let extinction = reference * libm::pow(wavelength_m / Self::REFERENCE_M, -self.angstrom_exponent);
         let albedo = linear_at(&self.single_scattering_albedo, wavelength_m);
         (extinction * albedo, extinction * (1.0 - albedo))
-    }
-}
-
-/// Value at `x` of a table whose first column rises: linear between, held beyond the ends; 0 where it is empty.
-pub(crate) fn linear_at(table: &[(f64, f64)], x: f64) -> f64 {
-    match table.iter().position(|p| p.0 >= x) {
-        None => table.last().map_or(0.0, |p| p.1),
-        Some(0) => table.first().map_or(0.0, |p| p.1),
-        Some(i) => {
-            let (a, b) = (table[i - 1], table[i]);
-            a.1 + (b.1 - a.1) * (x - a.0) / (b.0 - a.0)
-        }
     }
 }
 

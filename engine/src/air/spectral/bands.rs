@@ -17,6 +17,7 @@ use crate::air::medium::Medium;
 use crate::light::spectrum::{COUNT, Spectrum, observer, rgb_from_xyz, wavelength_nm, xyz_from_rgb};
 use crate::units::NM;
 use glam::{DMat3, DVec3};
+use serde::{Deserialize, Serialize};
 
 /// The six wavelengths, nm: [`Bands::media`] has the red, green, blue of the one triple and of the other.
 pub const BANDS_NM: [[f64; 3]; 2] = [[676.0, 566.0, 470.0], [612.0, 522.0, 432.0]];
@@ -32,7 +33,7 @@ const DARK: f64 = 1e-9;
 const N: usize = 6;
 
 /// A medium in six bands.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Bands {
     /// Two media whose channels are the wavelengths of [`BANDS_NM`].
     pub media: [Medium; 2],

@@ -18,7 +18,8 @@ pub use bands::{Bands, rgb};
 
 use super::RangeError;
 use super::medium::{Layer, Medium, Phase, Profile};
-use super::optics::{Aerosol, Gas, linear_at};
+use super::optics::{Aerosol, Gas};
+use crate::light::spectrum::{Starlight, linear_at};
 use crate::space::relative::narrow3;
 use crate::units::NM;
 use glam::DVec3;
@@ -73,6 +74,19 @@ impl SpectralMedium {
     /// Where numbers in threes hold unless a file says otherwise, m.
     pub const WAVELENGTHS_M: [f64; 3] = [680.0 * NM, 550.0 * NM, 440.0 * NM];
 
+    /// How it is drawn under a star: the medium of three channels, and its six bands where `spectral`; or everything that is out of range.
+    pub fn draw(&self, spectral: bool, star: &Starlight) -> Result<(Medium, Option<Box<Bands>>), Vec<RangeError>> {
+        let mut errors = self.validate();
+        errors.extend(self.medium_at(self.wavelengths_m).validate());
+        if !errors.is_empty() {
+            return Err(errors);
+        }
+        let mut sound = self.clone();
+        sound.layers.iter_mut().for_each(|l| l.phase = l.phase.normalised());
+        let star = star.spectrum();
+        Ok((rgb(&sound, &star), spectral.then(|| Box::new(Bands::new(&sound, &star)))))
+    }
+
     /// Everything out of range that is not [`Medium::validate`]'s.
     pub fn validate(&self) -> Vec<RangeError> {
         let mut e = Vec::new();
@@ -81,19 +95,18 @@ impl SpectralMedium {
         RangeError::check(&mut e, "wavelengths_nm[1]", green, blue + 1.0, 2000.0);
         RangeError::check(&mut e, "wavelengths_nm[2]", blue, 100.0, 2000.0);
         for (i, layer) in self.layers.iter().enumerate() {
-            let mut own = match &layer.optics {
-                Optics::Channels(..) => Vec::new(),
-                Optics::Gas(gas) => gas.validate(),
-                Optics::Aerosol(aerosol) => aerosol.validate(),
+            let own = match &layer.optics {
+                Optics::Channels(scattering, absorption) => validate_channels(scattering, absorption),
+                Optics::Gas(gas) => within("gas", gas.validate()),
+                Optics::Aerosol(aerosol) => within("aerosol", aerosol.validate()),
                 Optics::Ozone(column_du) => {
                     let mut own = Vec::new();
                     RangeError::check(&mut own, "column_du", *column_du, 0.0, 1e5);
-                    own
+                    within("absorber", own)
                 }
-                Optics::Table(rows) => validate_table(rows),
+                Optics::Table(rows) => within("table", validate_table(rows)),
             };
-            own.iter_mut().for_each(|error| error.field = format!("layers[{i}].{}", error.field));
-            e.append(&mut own);
+            e.append(&mut within(&format!("layers[{i}]"), own));
         }
         e
     }
@@ -129,6 +142,9 @@ impl SpectralMedium {
     /// A curve through three numbers at the medium's wavelengths: a power law on each side where all are positive, else straight and held.
     fn through(&self, rgb: [f64; 3], wavelength_m: f64) -> f64 {
         let [r, g, b] = self.wavelengths_m;
+        if let Some(i) = self.wavelengths_m.iter().position(|w| *w == wavelength_m) {
+            return rgb[i];
+        }
         if rgb.iter().any(|x| *x <= 0.0) {
             return linear_at(&[(b, rgb[2]), (g, rgb[1]), (r, rgb[0])], wavelength_m);
         }
@@ -183,15 +199,31 @@ impl SpectralMedium {
     }
 }
 
+/// The same errors, their fields inside a table.
+fn within(table: &str, mut errors: Vec<RangeError>) -> Vec<RangeError> {
+    errors.iter_mut().for_each(|e| e.field = format!("{table}.{}", e.field));
+    errors
+}
+
+fn validate_channels(scattering: &[f64; 3], absorption: &[f64; 3]) -> Vec<RangeError> {
+    let mut e = Vec::new();
+    for (key, values) in [("scattering_per_m", scattering), ("absorption_per_m", absorption)] {
+        for (channel, x) in values.iter().enumerate() {
+            RangeError::check(&mut e, &format!("{key}[{channel}]"), *x, 0.0, 1.0);
+        }
+    }
+    e
+}
+
 fn validate_table(rows: &[[f64; 3]]) -> Vec<RangeError> {
     let mut e = Vec::new();
-    RangeError::check(&mut e, "table.wavelengths_nm", rows.len() as f64, 2.0, 10_000.0);
+    RangeError::check(&mut e, "wavelengths_nm", rows.len() as f64, 2.0, 10_000.0);
     for pair in rows.windows(2) {
-        RangeError::check(&mut e, "table.wavelengths_nm", pair[1][0] / NM, pair[0][0] / NM, 1e5);
+        RangeError::check(&mut e, "wavelengths_nm", pair[1][0] / NM, pair[0][0] / NM, 1e5);
     }
     for row in rows {
-        RangeError::check(&mut e, "table.scattering_per_m", row[1], 0.0, 1.0);
-        RangeError::check(&mut e, "table.absorption_per_m", row[2], 0.0, 1.0);
+        RangeError::check(&mut e, "scattering_per_m", row[1], 0.0, 1.0);
+        RangeError::check(&mut e, "absorption_per_m", row[2], 0.0, 1.0);
     }
     e
 }
@@ -271,7 +303,8 @@ pub(crate) mod tests {
         bad.layers[2].optics = Optics::Ozone(-1.0);
         bad.layers[0].optics = Optics::Table(vec![[500e-9, 1e-5, 0.0], [400e-9, 1e-5, 2.0]]);
         let fields: Vec<_> = bad.validate().into_iter().map(|e| e.field).collect();
-        let expected = ["wavelengths_nm[0]", "layers[0].table.wavelengths_nm", "layers[0].table.absorption_per_m", "layers[2].column_du"];
+        let expected =
+            ["wavelengths_nm[0]", "layers[0].table.wavelengths_nm", "layers[0].table.absorption_per_m", "layers[2].absorber.column_du"];
         assert_eq!(fields, expected);
     }
 }

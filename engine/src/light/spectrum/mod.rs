@@ -1,6 +1,6 @@
 //! Spectra and what the eye makes of them: 216 wavelengths from 350 to 780 nm, the CIE 1931 observer, linear sRGB.
 //!
-//! [`Spectrum`] holds a value per wavelength; a star's is [`Spectrum::sun`] or a [`Spectrum::black_body`]. [`difference`] tells how far two
+//! [`Spectrum`] holds a value per wavelength; [`Starlight`] is where a star's comes from: the Sun's table, a black body, or a table of one's own. [`difference`] tells how far two
 //! colours are apart. White is that of sRGB, D65, everywhere: nothing is adapted to the star, so that sunlight is a little warm and a red
 //! dwarf's is red. Not here: spectra of air ([`crate::air::spectral`]), brightness on the screen ([`super::exposure`]).
 //!
@@ -9,7 +9,10 @@
 //! [Lindbloom] "RGB/XYZ Matrices": the matrix from the primaries' chromaticities. [Planck 1901].
 
 pub mod difference;
+pub mod star;
 mod table;
+
+pub use star::Starlight;
 
 use crate::units::{NM, SPEED_OF_LIGHT};
 use glam::{DMat3, DVec3};
@@ -78,6 +81,18 @@ impl Spectrum {
         let held = self.rgb().max(DVec3::ZERO);
         let luminance = (xyz_from_rgb() * held).y;
         if luminance > 0.0 && luminance.is_finite() { held / luminance } else { DVec3::ONE }
+    }
+}
+
+/// Value at `x` of a table whose first column rises: linear between, held beyond the ends; 0 where it is empty.
+pub fn linear_at(table: &[(f64, f64)], x: f64) -> f64 {
+    match table.iter().position(|p| p.0 >= x) {
+        None => table.last().map_or(0.0, |p| p.1),
+        Some(0) => table.first().map_or(0.0, |p| p.1),
+        Some(i) => {
+            let (a, b) = (table[i - 1], table[i]);
+            a.1 + (b.1 - a.1) * (x - a.0) / (b.0 - a.0)
+        }
     }
 }
 
