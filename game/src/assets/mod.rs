@@ -104,6 +104,11 @@ impl Assets {
         system::load_system(&self.overlay, key, progress)
     }
 
+    /// A system with its airs read anew, everything else as it is.
+    pub fn airs(&self, system: &System) -> Result<Arc<System>, AssetErrors> {
+        system::reread_airs(&self.overlay, system)
+    }
+
     /// A ship.
     pub fn ship(&self, key: &str) -> Result<Arc<ShipSpec>, AssetErrors> {
         ship::load_ship(&self.overlay, key)
