@@ -3,18 +3,23 @@
 //! [`physical`] is the default. What a model draws is judged by [`super::reference`]; its shader is `shaders/pass/sky_<model>.wgsl`.
 
 pub mod gradient;
+pub mod limb_table;
 pub mod maps;
 pub mod physical;
 pub mod shell;
 pub mod thickness;
+pub mod view_space;
+pub mod view_table;
 
 use super::Medium;
 use serde::{Deserialize, Serialize};
 
 pub use gradient::Gradient;
+pub use limb_table::LimbTable;
 pub use maps::ColourMap;
 pub use physical::Physical;
 pub use thickness::Thickness;
+pub use view_table::ViewTable;
 
 /// How the light of an air is found.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -24,6 +29,10 @@ pub enum Model {
     Physical(Physical),
     /// As bright as the air is thick along the ray; the planet's shadow as a cone in it.
     Thickness(Thickness),
+    /// A 2-D table by two cosines at the shell's top, laid over additively.
+    LimbTable(LimbTable),
+    /// A 3-D table of single scattering by height, view and sun.
+    ViewTable(ViewTable),
     /// Colours of two small painted maps.
     Gradient(Gradient),
 }
