@@ -235,6 +235,17 @@ pub fn load_body(overlay: &Overlay, key: &str) -> Result<(), AssetErrors> {
     AssetErrors { faults: faults.into_inner() }.or(())
 }
 
+/// The air of a body alone.
+pub fn load_air(overlay: &Overlay, key: &str, star: &Starlight) -> Result<AirSpec, AssetErrors> {
+    let faults = Faults::default();
+    let mut air = AirSpec::default();
+    if let Some(tree) = read_tree(overlay, &format!("bodies/{key}/body.toml"), "the body", &faults) {
+        let spec = read_body(key, Reader::new(&tree, &faults));
+        air = read_atmosphere(overlay, key, Datum::new(spec.gm_m3_s2, spec.radius_m), star, &faults).0;
+    }
+    AssetErrors { faults: faults.into_inner() }.or(air)
+}
+
 /// Patches of what is not there, also in folders that no system lists.
 fn tell_orphans(overlay: &Overlay, faults: &Faults) {
     let known = bodies(overlay);

@@ -25,6 +25,8 @@ pub struct AirSpec {
     pub column: Option<Column>,
     /// What one sees, if anything.
     pub look: Option<Air>,
+    /// What `look` was drawn from.
+    pub by_wavelength: Option<SpectralMedium>,
 }
 
 /// What a body lends to its air.
@@ -54,11 +56,11 @@ pub fn read_air(r: &Reader<'_>, datum: Datum, star: &Starlight) -> AirSpec {
         return AirSpec::default();
     }
     let column = r.maybe_table("physics").and_then(|t| tell(&t, "", Column::new(&column_of(&t, datum))));
-    let look = look_of(r, datum, star);
+    let (look, by_wavelength) = look_of(r, datum, star).unzip();
     if let Some(look) = look.as_ref().filter(|_| r.errors() == before) {
         plausible::suspicions(r.node, look, column.as_ref(), datum.gravity_m_s2).into_iter().for_each(|s| r.fault(s));
     }
-    AirSpec { column, look }
+    AirSpec { column, look, by_wavelength }
 }
 
 /// Turns range errors into faults; `table` is where their fields are, with a point behind it.
@@ -94,7 +96,7 @@ fn column_of(r: &Reader<'_>, datum: Datum) -> ColumnSpec {
 }
 
 /// The look. What each model cannot do without is asked for here.
-fn look_of(r: &Reader<'_>, datum: Datum, star: &Starlight) -> Option<Air> {
+fn look_of(r: &Reader<'_>, datum: Datum, star: &Starlight) -> Option<(Air, SpectralMedium)> {
     let before = r.errors();
     let word = r.node.get("model").and_then(|e| e.value.text()).unwrap_or("physical");
     if word == "none" {
@@ -110,14 +112,14 @@ fn look_of(r: &Reader<'_>, datum: Datum, star: &Starlight) -> Option<Air> {
     let wavelengths_m = wavelengths_m.unwrap_or(SpectralMedium::WAVELENGTHS_M);
     let layers = layers::read(r, datum, Channels { wavelengths_m });
     let model = model_of(r, word);
-    let medium = SpectralMedium { bottom_radius_m: datum.radius_m, top_altitude_m, ground_albedo, wavelengths_m, layers };
+    let by_wavelength = SpectralMedium { bottom_radius_m: datum.radius_m, top_altitude_m, ground_albedo, wavelengths_m, layers };
     let spectral = word == "physical" && r.node.get("spectrum").and_then(|e| e.value.text()) == Some("spectral");
-    let drawn = tell(r, "", medium.draw(spectral, star));
+    let drawn = tell(r, "", by_wavelength.draw(spectral, star));
     if r.errors() > before {
         return None;
     }
     let (medium, bands) = drawn?;
-    Some(Air { medium, bands, model: model? })
+    Some((Air { medium, bands, model: model? }, by_wavelength))
 }
 
 /// The model that a word names, with the settings in the table of that name.
