@@ -4,12 +4,8 @@
 // a constant source exactly: ∫ S e^(−σt) dt = S (1 − e^(−σΔ)) / σ [Hillaire 2015, "Physically Based and Unified Volumetric Rendering"].
 
 #include "lib/air.wgsl"
+#include "lib/sky_pixel.wgsl"
 #include "lib/sunlight.wgsl"
-
-struct AirLight {
-    radiance: vec3<f32>,       // per unit of the sun's illuminance above the air, sr⁻¹
-    transmittance: vec3<f32>,  // of what lies behind
-}
 
 // What lights the air.
 struct AirSun {

@@ -4,10 +4,10 @@
 //! (all orders); its planets are written down in [`planet`].
 
 use engine::air::{Layer, Medium, Phase, Profile, reference};
-use engine::gpu::{ShaderLibrary, readback};
+use engine::gpu::{Gpu, ShaderLibrary, readback};
 use engine::render::pass::air_tables::AirBaker;
 use engine::render::pass::sky::STEPS;
-use engine::render::pass::sky_probe::{ProbeOptions, ProbeRay, march};
+use engine::render::pass::sky_probe::{ProbeLight, ProbeOptions, ProbeRay, probe};
 use engine::space::relative::{narrow, narrow3};
 use glam::{DVec3, Vec3};
 
@@ -76,13 +76,18 @@ fn rows(of: &str) -> Vec<Row> {
     rows
 }
 
+fn march(gpu: &Gpu, medium: &Medium, rays: &[ProbeRay], options: ProbeOptions) -> Vec<ProbeLight> {
+    let found = probe(gpu, &ShaderLibrary::checkout(), &medium.clone().into(), rays, &options).expect("it marches");
+    assert_eq!(gpu.take_error(), None);
+    found
+}
+
 /// Worst and mean relative error of radiance where it is not next to nothing, and worst absolute error of transmittance.
 fn errors(of: &str, multiple: bool, steps: u32) -> (f64, f64, f64) {
     let rows = rows(of);
     let rays: Vec<ProbeRay> = rows.iter().map(|r| r.ray).collect();
     let gpu = tests::gpu();
-    let found = march(&gpu, &ShaderLibrary::checkout(), &planet(of), &rays, ProbeOptions { steps, multiple }).expect("it marches");
-    assert_eq!(gpu.take_error(), None);
+    let found = march(&gpu, &planet(of), &rays, ProbeOptions { steps, multiple, ..Default::default() });
     let (mut worst, mut sum, mut n, mut worst_t) = (0.0_f64, 0.0, 0.0, 0.0_f64);
     for (row, light) in rows.iter().zip(&found) {
         for channel in 0..3 {
@@ -178,7 +183,7 @@ fn nothing_is_nan_wherever_one_stands() {
             }
         }
     }
-    let found = march(&gpu, &ShaderLibrary::checkout(), &medium, &rays, ProbeOptions { steps: STEPS, multiple: true }).expect("it marches");
+    let found = march(&gpu, &medium, &rays, ProbeOptions::default());
     for (ray, light) in rays.iter().zip(found) {
         let fine = light.radiance.iter().all(|x| x.is_finite() && *x >= 0.0) && light.transmittance.iter().all(|x| (0.0..=1.0).contains(x));
         assert!(fine, "{ray:?}: {light:?}");

@@ -80,13 +80,18 @@ fn metering(gpu: &Gpu, scene: &Snapshot, size: [u32; 2]) -> (Snapshot, Targets) 
     (small, Targets::new(gpu, size))
 }
 
-/// Everything that shines, in this order: air tables, tile heights, shadow, smooth bodies, terrain, ships, stars and the sun's
-/// disc, sky (which lays the air over `opaque` and its depth, into `aerial`). The value is the finished light: the HDR texture that the picture is made of.
+/// Everything that shines, in this order: air tables and those of its models, tile heights, shadow, smooth bodies, terrain, ships, stars and the sun's
+/// disc, sky (which lays every air over `opaque` and its depth). The value is the finished light: the HDR texture that the picture is made of.
 fn light(f: &mut FrameContext<'_>, passes: &mut Passes) -> Result<wgpu::TextureView, RenderError> {
     f.clear_opaque();
 
     let skip = passes.air_tables.skip(f.scene);
     let air = if f.runs("air_tables", skip) { passes.air_tables.record(f) } else { passes.air_tables.values() };
+
+    let skip = passes.sky.plan(f);
+    if f.runs("sky_tables", skip) {
+        passes.sky.record_tables(f);
+    }
 
     let skip = passes.terrain.plan(f.gpu, f.scene, f.maps);
     if f.runs("tile_heights", skip) {

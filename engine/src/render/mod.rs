@@ -17,7 +17,7 @@ pub(crate) mod tests;
 pub use image::{HdrImage, OffscreenImage};
 pub use maps::{BodyMaps, ColourMap};
 pub use pass::stars::StarCatalogue;
-pub use report::{FrameReport, PassReport};
+pub use report::{AirReport, FrameReport, PassReport};
 
 use crate::gpu::readback;
 use crate::gpu::timer::Timer;
@@ -117,8 +117,8 @@ pub struct Renderer {
     pub(crate) options: RendererOptions,
     /// Frames drawn.
     pub(crate) number: u32,
-    /// The sky pass ran in the last frame: its light is in `aerial`.
-    pub(crate) through_air: bool,
+    /// The last frame's finished light is in `aerial`, else in `opaque`.
+    pub(crate) in_aerial: bool,
     /// An exposure has been found (so that the next live frame may adapt from it).
     pub(crate) exposed: bool,
 }
@@ -139,7 +139,7 @@ impl Renderer {
             catalogue: StarCatalogue::default(),
             options,
             number: 0,
-            through_air: false,
+            in_aerial: false,
             exposed: false,
         };
         match gpu.take_error() {
@@ -229,7 +229,7 @@ impl Renderer {
     /// Fills in the pass times; a still waits for its own, a live frame shows the newest known.
     pub(crate) fn end(&mut self, gpu: &Gpu, mut report: FrameReport, still: bool) -> Result<FrameReport, RenderError> {
         self.exposed = true;
-        self.through_air = report.pass("sky").is_some_and(|p| p.ran);
+        self.in_aerial = self.passes.sky.in_aerial();
         self.number = self.number.wrapping_add(1).max(1);
         if still {
             self.timer.settle(gpu)?;
@@ -245,7 +245,7 @@ impl Renderer {
         let targets = self.targets.as_ref().filter(|_| self.number > 0).ok_or(RenderError::NothingDrawn)?;
         let exposure: ExposureUniform = bytemuck::pod_read_unaligned(&readback::buffer(gpu, &self.shared.exposure_used.buffer)?);
         let scale = 1.0 / exposure.pre.max(f32::MIN_POSITIVE);
-        let mut rgba = readback::texture_f32(gpu, if self.through_air { &targets.aerial.texture } else { &targets.opaque.texture }, 0)?;
+        let mut rgba = readback::texture_f32(gpu, if self.in_aerial { &targets.aerial.texture } else { &targets.opaque.texture }, 0)?;
         for texel in rgba.chunks_exact_mut(4) {
             texel[..3].iter_mut().for_each(|c| *c *= scale);
             texel[3] = 1.0;

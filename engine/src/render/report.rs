@@ -15,11 +15,29 @@ pub struct PassReport {
     pub gpu_ms: Option<f64>,
 }
 
+/// What became of one body's air.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct AirReport {
+    /// Id of the body.
+    pub body: u16,
+    /// Name of its model.
+    pub model: String,
+    /// Whether it was drawn.
+    pub ran: bool,
+    /// Why it was drawn as it was, or skipped, in words.
+    pub reason: String,
+    /// Share of the picture that it was drawn over, 0 … 1.
+    pub covers: f32,
+}
+
 /// What became of a frame.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FrameReport {
     /// The passes in the order of the frame.
     pub passes: Vec<PassReport>,
+    /// Every air of the scene, far to near.
+    #[serde(default)]
+    pub airs: Vec<AirReport>,
 }
 
 impl FrameReport {

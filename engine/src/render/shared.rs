@@ -8,7 +8,7 @@
 
 use super::maps::MapStore;
 use super::pipeline::{depth_entry, sampler_entry, texture_entry, uniform_entry};
-use super::report::{FrameReport, PassReport};
+use super::report::{AirReport, FrameReport, PassReport};
 use super::targets::{DEPTH, Targets};
 use crate::gpu::Gpu;
 use crate::gpu::buffer::Uniform;
@@ -179,6 +179,11 @@ impl FrameContext<'_> {
         };
         self.report.passes.push(PassReport { name: name.to_owned(), ran, reason, gpu_ms: None });
         ran
+    }
+
+    /// Notes what becomes of a body's air.
+    pub fn report_air(&mut self, air: AirReport) {
+        self.report.airs.push(air);
     }
 
     /// Begins a render pass that draws over what is in the opaque HDR target and depth; group 0 is bound.

@@ -16,9 +16,9 @@ pub const BLOOM_LEVELS: u32 = 7;
 pub struct Targets {
     /// Width and height, pixels.
     pub size: [u32; 2],
-    /// Opaque things, stars and the sun's disc; pre-exposed.
+    /// Opaque things, stars and the sun's disc; pre-exposed. Airs that cover only a part of the picture are laid over it here.
     pub opaque: Texture,
-    /// The same behind air; written by the sky pass.
+    /// The same behind an air that covers the whole picture; written by the sky pass.
     pub aerial: Texture,
     /// Depth of opaque things.
     pub depth: Texture,
@@ -32,7 +32,7 @@ impl Targets {
     /// All textures for a picture of this size.
     pub fn new(gpu: &Gpu, size: [u32; 2]) -> Self {
         let d = &gpu.device;
-        let hdr = Use::RENDER_ATTACHMENT | Use::TEXTURE_BINDING | Use::COPY_SRC;
+        let hdr = Use::RENDER_ATTACHMENT | Use::TEXTURE_BINDING | Use::COPY_SRC | Use::COPY_DST;
         let half = size.map(|n| n.div_ceil(2).max(1));
         let levels = (half[0].min(half[1]).ilog2() + 1).min(BLOOM_LEVELS);
         let bloom = Texture::with(d, "bloom", [half[0], half[1], 1], levels, HDR, hdr);

@@ -2,11 +2,11 @@
 //!
 //! glam's `scalar-math` (asked for by rapier's determinism) makes `align_of::<Vec4>()` 4, so GPU structs use plain arrays
 //! and explicit padding; `tests/tests/shaders.rs` compares every one, field by field, with naga's reflection of the WGSL.
-//! A struct here has the name and the field names of its WGSL twin plus `Uniform`. Fields are explained there.
+//! A struct here has the name and the field names of its WGSL twin plus `Uniform`. Fields are explained there. Those of ground and
+//! air are in `gpu_terrain.rs` and `gpu_air.rs`.
 
 use super::{Body, Camera, Ship, Snapshot, Surface};
-use crate::air::{Medium, Phase, Profile};
-use crate::space::relative::narrow;
+pub use super::gpu_air::{AirUniform, AirsUniform, MAX_AIRS, SKY_SETTINGS, SKY_SINGLE, SkySettings, SkyUniform};
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
@@ -201,93 +201,5 @@ impl ShipInstance {
             hull_z: axis(Vec3::Z, 0.0),
             state: [ship.throttle.clamp(0.0, 1.0), ship.gear.clamp(0.0, 1.0), ship.heat.clamp(0.0, 1.0), ship.height_above_ground_m],
         }
-    }
-}
-
-/// Atmospheres that the tables hold at once.
-pub const MAX_AIRS: usize = 16;
-/// Stands for an asymmetry where the phase function is Rayleigh's: `PHASE_RAYLEIGH` of `shaders/lib/phase.wgsl`.
-const PHASE_RAYLEIGH: f32 = 2.0;
-
-/// `Air` of `shaders/lib/medium.wgsl`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-#[allow(missing_docs)]
-pub struct AirUniform {
-    pub shape: [f32; 4],
-    pub albedo: [f32; 4],
-    pub scattering: [[f32; 4]; 4],
-    pub extinction: [[f32; 4]; 4],
-    pub inverse_height: [f32; 4],
-    pub tent_bottom: [f32; 4],
-    pub tent_rise: [f32; 4],
-    pub tent_top: [f32; 4],
-    pub tent_fall: [f32; 4],
-    pub asymmetry: [f32; 4],
-}
-
-/// `Airs` of `shaders/lib/medium.wgsl`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-#[allow(missing_docs)]
-pub struct AirsUniform {
-    pub list: [AirUniform; MAX_AIRS],
-}
-
-impl AirUniform {
-    /// Layers that it holds.
-    pub const LAYERS: usize = 4;
-
-    /// From a medium: its first [`Self::LAYERS`] exponential and tent layers. Henyey–Greenstein is taken for Cornette–Shanks, any other phase for Rayleigh's.
-    pub fn new(medium: &Medium) -> Self {
-        let mut air = Self::zeroed();
-        air.shape = [narrow(medium.bottom_radius_m), narrow(medium.top_altitude_m), 0.0, 0.0];
-        air.albedo = vec4(medium.ground_albedo, 0.0);
-        air.asymmetry = [PHASE_RAYLEIGH; 4];
-        for (i, layer) in medium
-            .layers
-            .iter()
-            .filter(|l| matches!(l.profile, Profile::Exponential { .. } | Profile::Tent { .. }))
-            .take(Self::LAYERS)
-            .enumerate()
-        {
-            air.scattering[i] = vec4(layer.scattering_per_m, 0.0);
-            air.extinction[i] = vec4(layer.scattering_per_m + layer.absorption_per_m, 0.0);
-            match layer.profile {
-                Profile::Exponential { scale_height_m } => air.inverse_height[i] = 1.0 / scale_height_m,
-                Profile::Tent { bottom_m, peak_m, top_m } => {
-                    air.tent_bottom[i] = bottom_m;
-                    air.tent_rise[i] = 1.0 / (peak_m - bottom_m);
-                    air.tent_top[i] = top_m;
-                    air.tent_fall[i] = 1.0 / (top_m - peak_m);
-                }
-                Profile::Constant { .. } | Profile::Table { .. } => {}
-            }
-            if let Phase::CornetteShanks { g } | Phase::HenyeyGreenstein { g } = layer.phase {
-                air.asymmetry[i] = g;
-            }
-        }
-        air
-    }
-}
-
-/// `Sky` of `shaders/pass/sky.wgsl`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-#[allow(missing_docs)]
-pub struct SkyUniform {
-    pub order: [[u32; 4]; 4],
-    pub counts: [u32; 4],
-}
-
-impl SkyUniform {
-    /// Indices of the bodies whose air is laid over the picture, in order, and the steps of a march.
-    #[allow(clippy::cast_possible_truncation)]
-    pub fn new(order: &[u32], steps: u32) -> Self {
-        let mut all = Self { order: [[0; 4]; 4], counts: [order.len().min(MAX_AIRS) as u32, steps, 0, 0] };
-        for (slot, index) in all.order.iter_mut().flatten().zip(order) {
-            *slot = *index;
-        }
-        all
     }
 }

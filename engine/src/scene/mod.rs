@@ -3,6 +3,7 @@
 //! [`snapshot`] is the list; [`camera`] holds the projection; [`gpu_data`] the `#[repr(C)]` mirrors of WGSL structs.
 
 pub mod camera;
+pub mod gpu_air;
 pub mod gpu_data;
 pub mod gpu_terrain;
 pub mod snapshot;

@@ -1,15 +1,22 @@
-//! Sky probe: the same tables and the same march as the drawn sky, along given rays instead of pixels. For `probe sky` and tests.
+//! Sky probe: any model of air along given rays instead of pixels, by the tables, the painter and the shader function that draw it.
+//! For `probe sky`, `bench air` and tests.
 
 use super::air_tables::AirBaker;
-use crate::air::Medium;
+use super::sky::{Parts, STEPS, painter, picture_layout};
+use crate::air::Air;
 use crate::gpu::{Gpu, ShaderLibrary, readback};
 use crate::render::RenderError;
-use crate::render::pipeline::{compute_pipeline, sampler_entry, texture_entry, uniform_entry};
+use crate::render::pipeline::{compute_pipeline, uniform_entry};
+use crate::render::shared::{ShadowMap, Shared};
+use crate::scene::gpu_data::{BodiesUniform, BodyUniform, FrameUniform, MAX_OCCLUDERS, SKY_SINGLE, SkyUniform, vec4};
+use crate::scene::{Body, Occluder, Surface};
+use crate::space::relative::narrow;
 use bytemuck::{Pod, Zeroable};
+use glam::{Quat, Vec3};
 use wgpu::util::DeviceExt as _;
-use wgpu::{BindingResource, BufferUsages};
+use wgpu::{BindGroupEntry, BufferUsages};
 
-/// A ray to probe; `ProbeRay` of `shaders/pass/sky_probe.wgsl`.
+/// A ray to probe; `ProbeRay` of `shaders/lib/sky_pixel.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct ProbeRay {
@@ -31,28 +38,55 @@ pub struct ProbeLight {
     pub transmittance: [f32; 4],
 }
 
-/// How to march.
-#[derive(Clone, Copy, Debug)]
+/// How to probe.
+#[derive(Clone, Debug, PartialEq)]
 pub struct ProbeOptions {
-    /// Steps.
+    /// Steps of a march through a whole sky, for models that march.
     pub steps: u32,
-    /// Whether orders beyond the first are added.
+    /// Whether orders beyond the first are added, for models that tell them apart.
     pub multiple: bool,
+    /// What may hide the star: `centre_m` from the body's centre.
+    pub occluders: Vec<Occluder>,
+    /// Centre (from the body's, m) and radius of the star, for occluders.
+    pub star: (Vec3, f32),
 }
 
-/// Marches every ray through `medium`, to the ground or out of the air.
+impl Default for ProbeOptions {
+    fn default() -> Self {
+        Self { steps: STEPS, multiple: true, occluders: Vec::new(), star: (Vec3::Z, 0.0) }
+    }
+}
+
+/// What each ray through `air` brings, to the ground or out of the air.
 #[allow(clippy::cast_possible_truncation)]
-pub fn march(
+pub fn probe(
     gpu: &Gpu,
     shaders: &ShaderLibrary,
-    medium: &Medium,
+    air: &Air,
     rays: &[ProbeRay],
-    options: ProbeOptions,
+    options: &ProbeOptions,
 ) -> Result<Vec<ProbeLight>, RenderError> {
     if rays.is_empty() {
         return Ok(Vec::new());
     }
-    let tables = AirBaker::new(gpu, shaders)?.bake_alone(gpu, medium);
+    let shared = Shared::new(gpu);
+    let body = alone(air, options);
+    let mut bodies = BodiesUniform::zeroed();
+    bodies.list[0] = BodyUniform::new(&body, Some(0));
+    shared.bodies.write(&gpu.queue, &bodies);
+    let mut frame = FrameUniform::zeroed();
+    frame.star = vec4(options.star.0, options.star.1);
+    shared.frame.write(&gpu.queue, &frame);
+    let tables = AirBaker::new(gpu, shaders)?.bake_alone(gpu, &air.medium);
+    let light = shared.light_group(gpu, &tables, &ShadowMap::none(gpu));
+
+    let picture = picture_layout(gpu);
+    let mut painter = painter(&Parts { gpu, shaders, shared: &shared, picture: &picture }, &air.model)?;
+    painter.plan(gpu, &[(body.id, air)], true);
+    let mut encoder = gpu.encoder("sky tables");
+    painter.bake(gpu, &mut encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default()));
+    gpu.submit(encoder);
+
     let storage = |binding, read_only| wgpu::BindGroupLayoutEntry {
         binding,
         visibility: wgpu::ShaderStages::COMPUTE,
@@ -63,46 +97,59 @@ pub fn march(
         },
         count: None,
     };
-    let array = wgpu::TextureViewDimension::D2Array;
     let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("sky probe"),
-        entries: &[
-            uniform_entry(0),
-            texture_entry(1, array),
-            texture_entry(2, array),
-            sampler_entry(3, wgpu::SamplerBindingType::Filtering),
-            uniform_entry(4),
-            storage(5, true),
-            storage(6, false),
-        ],
+        label: Some("group 2: rays"),
+        entries: &[uniform_entry(2), storage(3, true), storage(4, false)],
     });
-    let module = shaders.load(&gpu.device, "pass/sky_probe.wgsl")?;
-    let pipeline = compute_pipeline(gpu, "sky_probe", &module, &[&layout], "probe");
+    let kind = painter.kind();
+    let module = shaders.load(&gpu.device, kind.file)?;
+    let groups = [&shared.frame_layout, &shared.light_layout, &layout, &kind.own_layout];
+    let pipeline = compute_pipeline(gpu, "sky_probe", &module, &groups, "probe");
     let buffer = |contents: &[u8], usage| {
         gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some("sky probe"), contents, usage })
     };
-    let wanted = buffer(bytemuck::bytes_of(&[options.steps, u32::from(options.multiple), 0, 0]), BufferUsages::UNIFORM);
+    let flags = if options.multiple { 0 } else { SKY_SINGLE };
+    let sky = SkyUniform { ids: [0, options.steps, flags, 0], settings: painter.settings(&body, air) };
+    let sky = buffer(bytemuck::bytes_of(&sky), BufferUsages::UNIFORM);
     let given = buffer(bytemuck::cast_slice(rays), BufferUsages::STORAGE);
     let empty = vec![ProbeLight::zeroed(); rays.len()];
     let found = buffer(bytemuck::cast_slice(&empty), BufferUsages::STORAGE | BufferUsages::COPY_SRC);
-    let linear = crate::gpu::texture::linear_sampler(&gpu.device, "sky probe", false);
-    let resources = [
-        tables.airs.as_entire_binding(),
-        BindingResource::TextureView(&tables.transmittance),
-        BindingResource::TextureView(&tables.multiple),
-        BindingResource::Sampler(&linear),
-        wanted.as_entire_binding(),
-        given.as_entire_binding(),
-        found.as_entire_binding(),
-    ];
-    let entries: Vec<_> = (0..).zip(resources).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
-    let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("sky probe"), layout: &layout, entries: &entries });
+    let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("sky probe"),
+        layout: &layout,
+        entries: &[
+            BindGroupEntry { binding: 2, resource: sky.as_entire_binding() },
+            BindGroupEntry { binding: 3, resource: given.as_entire_binding() },
+            BindGroupEntry { binding: 4, resource: found.as_entire_binding() },
+        ],
+    });
     let mut encoder = gpu.encoder("sky probe");
     let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
     pass.set_pipeline(&pipeline);
-    pass.set_bind_group(0, &group, &[]);
+    for (i, group) in (0..).zip([&shared.frame_group, &light, &group, painter.group(body.id)]) {
+        pass.set_bind_group(i, group, &[]);
+    }
     pass.dispatch_workgroups((rays.len() as u32).div_ceil(64), 1, 1);
     drop(pass);
     gpu.submit(encoder);
     Ok(bytemuck::pod_collect_to_vec(&readback::buffer(gpu, &found)?))
+}
+
+/// The body whose air is probed: eye and sun come with each ray.
+fn alone(air: &Air, options: &ProbeOptions) -> Body {
+    Body {
+        id: 0,
+        centre_m: Vec3::ZERO,
+        radius_m: narrow(air.medium.bottom_radius_m),
+        icrf_from_fixed: Quat::IDENTITY,
+        camera_altitude_m: 0.0,
+        camera_up: Vec3::Z,
+        sun_direction: Vec3::Z,
+        sun_angular_radius_rad: 0.0,
+        sun_illuminance_lx: Vec3::ONE,
+        occluders: options.occluders.iter().take(MAX_OCCLUDERS).copied().collect(),
+        albedo: Vec3::ZERO,
+        surface: Surface::Smooth,
+        air: Some(air.clone()),
+    }
 }

@@ -1,0 +1,106 @@
+// What every model of air shares when it is drawn or probed: the ray through a pixel and how far it is seen, the rays that stand for
+// a pixel on a limb, and how light and transmittance are laid over the picture.
+//
+// A model is one pure function in its own file of shaders/lib, `… -> AirLight`, asked with a `SkyView`; shaders/pass/sky_<model>.wgsl
+// binds it twice: `fragment` for the picture, `probe` for given rays. Rust side: engine/src/render/pass/sky/mod.rs and sky_probe.rs.
+// Group 2 of such a pass: @binding(0) opaque, (1) depth, (2) var<uniform> sky: Sky; of its probe: (2) sky, (3) given, (4) found.
+// Group 3 is the model's own.
+
+#include "lib/air_path.wgsl"
+#include "lib/frame.wgsl"
+
+const SKY_SETTINGS: u32 = 8u;
+const SKY_SINGLE: u32 = 1u;  // flag: orders beyond the first are left out (probes only)
+
+struct Sky {
+    ids: vec4<u32>,                              // index of the body; steps of a long march; flags; 0
+    settings: array<vec4<f32>, SKY_SETTINGS>,    // the model's numbers, in its own order
+}
+
+struct AirLight {
+    radiance: vec3<f32>,       // per unit of the sun's illuminance above the air, sr⁻¹
+    transmittance: vec3<f32>,  // of what lies behind
+}
+
+// A ray of sight.
+struct SkyView {
+    ray: vec3<f32>,   // unit
+    surface: f32,     // distance to what was drawn there; 1e30 where nothing was
+    datum: bool,      // where the ray meets the datum and nothing nearer was drawn, the datum ends it
+    pixel: f32,       // angle of a pixel, rad; 0: a line of no width
+}
+
+// A ray to probe, and what it brings.
+struct ProbeRay {
+    up: vec4<f32>,   // unit zenith of the eye, its altitude, m
+    ray: vec4<f32>,  // unit direction of sight, 0
+    sun: vec4<f32>,  // unit direction to the sun, its angular radius, rad
+}
+struct ProbeLight {
+    radiance: vec4<f32>,
+    transmittance: vec4<f32>,
+}
+
+// `stored` is the depth of the pixel.
+fn sky_view(frame: Frame, uv: vec2<f32>, stored: f32) -> SkyView {
+    let through = view_ray(frame, uv);
+    let stretch = length(through);
+    let drawn = stored > 0.0;
+    return SkyView(through / stretch, select(1e30, axis_distance(frame, stored) * stretch, drawn), !drawn, frame.up.w);
+}
+
+// From afar the air at a limb is thinner than a pixel: there, several rays across it stand for one. Elsewhere: 1.
+// From within the air, ground that was drawn ends the ray where it stands.
+fn sky_rays(body: Body, air: Air, view: SkyView) -> u32 {
+    let path = air_path(air, body.up.xyz, body.up.w, view.ray);
+    if path.start < 0.0 || view.surface <= path.start || !(path.start > 0.0 || view.datum) {
+        return 1u;
+    }
+    let pixel = view.pixel * (path.start + path.exit);
+    let low = air_altitude(air, path, clamp(-path.slope, 0.0, path.exit));
+    return select(1u, 5u, pixel > 0.05 * air.shape.y && low < air.shape.y + pixel && low > -pixel);
+}
+
+// The k-th of `rays` rays across the pixel; a single one is the view itself.
+fn sky_across(body: Body, view: SkyView, k: u32, rays: u32) -> SkyView {
+    if rays <= 1u {
+        return view;
+    }
+    let aside = ((f32(k) + 0.5) / f32(rays) - 0.5) * view.pixel;
+    let outwards = body.up.xyz - view.ray * dot(view.ray, body.up.xyz);
+    let ray = normalize(view.ray + outwards * (aside / max(length(outwards), 1e-20)));
+    // What was drawn in the pixel's middle is not what its other parts show: the datum decides, as long as the air lies before it.
+    return SkyView(ray, view.surface, true, view.pixel);
+}
+
+// Where the ray ends, from the path's start; nothing to see where it is not positive.
+fn sky_end(path: AirPath, view: SkyView) -> f32 {
+    if path.start < 0.0 || view.surface <= path.start {
+        return 0.0;
+    }
+    let exit = select(path.exit, path.ground, path.ground >= 0.0 && view.datum);
+    // On a limb (a datum and a surface both) the datum is the finer of the two.
+    return select(min(exit, view.surface - path.start), exit, view.datum);
+}
+
+// The body as a probe's ray stands to it.
+fn sky_probe_body(body: Body, asked: ProbeRay) -> Body {
+    var there = body;
+    there.up = asked.up;
+    there.sun = asked.sun;
+    let from_centre = asked.up.xyz * (body.centre.w + asked.up.w);
+    there.centre = vec4<f32>(-from_centre, body.centre.w);
+    for (var i = 0u; i < MAX_OCCLUDERS; i++) {
+        there.occluders[i] = vec4<f32>(body.occluders[i].xyz - from_centre, body.occluders[i].w);
+    }
+    return there;
+}
+fn sky_probe_view(asked: ProbeRay) -> SkyView {
+    return SkyView(asked.ray.xyz, 1e30, true, 0.0);
+}
+
+// Light and transmittance laid over a stored colour; `sum` is over `rays` rays.
+fn sky_over(behind: vec3<f32>, sum: AirLight, rays: u32, body: Body, exposure: Exposure) -> vec4<f32> {
+    let share = 1.0 / f32(rays);
+    return vec4<f32>(to_hdr(behind * sum.transmittance * share + sum.radiance * body.illuminance.rgb * (exposure.pre * share), 1.0), 1.0);
+}
