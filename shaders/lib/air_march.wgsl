@@ -17,7 +17,7 @@ struct AirSun {
 
 // From the path's start to `end` metres further, in `count` steps. `ray` is the direction of sight, `star` the star's sphere.
 fn air_march(
-    air: Air, transmittance: texture_2d_array<f32>, multiple: texture_2d_array<f32>, linear: sampler, slot: i32,
+    air: Air, transmittance: texture_2d_array<f32>, orders: texture_3d<f32>, linear: sampler, slot: i32,
     path: AirPath, end: f32, ray: vec3<f32>, sun: AirSun, body: Body, star: vec4<f32>, count: u32,
 ) -> AirLight {
     let phase = air_phase(air, dot(ray, sun.direction)) * sun.single;
@@ -45,7 +45,7 @@ fn air_march(
         }
         let direct = visible_between(sun.angular_radius, from_sun, to_sun) * eclipse.direct;
         var source = air.scattering * density * (sun.multiple * eclipse.diffuse)
-            * air_multiple(air, multiple, linear, slot, altitude, mu_s);
+            * air_orders(air, orders, linear, slot, altitude, mu_s, (path.slope + s) / (air.shape.x + altitude), ray_sun);
         if direct > 0.0 {
             source += air.scattering * (density * phase) * direct
                 * air_sun_transmittance(air, transmittance, linear, slot, altitude, mu_s);

@@ -17,6 +17,7 @@ struct Air {
     tent_top: vec4<f32>,
     tent_fall: vec4<f32>,       // 1 / (top − peak)
     asymmetry: vec4<f32>,       // of the phase function; PHASE_RAYLEIGH
+    orders: vec4<f32>,          // how the sun's height is mapped in the table of further orders: SunMap of engine/src/air/model/orders.rs, 0
 }
 
 struct Airs {

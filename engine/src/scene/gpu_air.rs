@@ -1,6 +1,7 @@
 //! `#[repr(C)]` mirrors of the structs of air in `shaders/`; the rules are those of [`super::gpu_data`].
 
 use super::gpu_data::vec4;
+use crate::air::model::orders::SunMap;
 use crate::air::{Medium, Phase, Profile};
 use crate::space::relative::narrow;
 use bytemuck::{Pod, Zeroable};
@@ -25,6 +26,7 @@ pub struct AirUniform {
     pub tent_top: [f32; 4],
     pub tent_fall: [f32; 4],
     pub asymmetry: [f32; 4],
+    pub orders: [f32; 4],
 }
 
 /// `Airs` of `shaders/lib/medium.wgsl`.
@@ -45,6 +47,8 @@ impl AirUniform {
         air.shape = [narrow(medium.bottom_radius_m), narrow(medium.top_altitude_m), 0.0, 0.0];
         air.albedo = vec4(medium.ground_albedo, 0.0);
         air.asymmetry = [PHASE_RAYLEIGH; 4];
+        let map = SunMap::new(medium);
+        air.orders = [narrow(map.scale), narrow(map.low), narrow(map.inverse), 0.0];
         for (i, layer) in medium
             .layers
             .iter()

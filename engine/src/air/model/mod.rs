@@ -2,6 +2,7 @@
 //!
 //! [`physical`] is the default. What a model draws is judged by [`super::reference`]; its shader is `shaders/pass/sky_<model>.wgsl`.
 
+pub mod orders;
 pub mod physical;
 
 use super::Medium;
