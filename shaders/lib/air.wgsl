@@ -6,7 +6,7 @@
 // Made by engine/src/render/pass/air_tables.rs. Not here: light along a ray of sight (lib/air_march.wgsl); all of it together for a surface (lib/daylight.wgsl).
 
 #include "lib/air_orders.wgsl"
-#include "lib/air_path.wgsl"
+#include "lib/air_quadrature.wgsl"
 
 const TRANSMITTANCE_SIZE: vec2<f32> = vec2<f32>(256.0, 64.0);
 const IRRADIANCE_SIZE: vec2<f32> = vec2<f32>(32.0, 16.0);  // ORDERS_SUNS, ORDERS_ALTITUDES

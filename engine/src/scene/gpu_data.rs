@@ -6,7 +6,9 @@
 //! air are in `gpu_terrain.rs` and `gpu_air.rs`.
 
 use super::{Body, Camera, Ship, Snapshot, Surface};
-pub use super::gpu_air::{AirUniform, AirsUniform, MAX_AIRS, SKY_SETTINGS, SKY_SINGLE, SkySettings, SkyUniform};
+pub use super::gpu_air::{
+    AirUniform, AirsUniform, MAX_AIRS, MEDIA_COLUMNS, MEDIA_ROWS, PhasesUniform, SKY_SETTINGS, SKY_SINGLE, SkySettings, SkyUniform, media_rows,
+};
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 

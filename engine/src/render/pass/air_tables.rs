@@ -4,17 +4,17 @@
 //! What the tables mean and how to ask them is in `shaders/lib/air.wgsl`; bodies without air have no slot and ask nothing.
 
 use super::air_orders::{Inputs, OrdersBaker};
-use crate::air::Medium;
 use crate::air::model::orders::Plan;
+use crate::air::{Classes, Medium};
 use crate::gpu::buffer::Uniform;
 use crate::gpu::texture::{Texture, linear_sampler};
 use crate::gpu::{Gpu, ShaderLibrary};
 use crate::render::RenderError;
-use crate::render::pipeline::{compute_pipeline, uniform_entry};
+use crate::render::pipeline::{compute_pipeline, loaded_entry, uniform_entry};
 use crate::render::shared::{AirTables, FrameContext};
 use crate::render::targets::HDR;
 use crate::scene::Snapshot;
-use crate::scene::gpu_data::{AirUniform, AirsUniform, MAX_AIRS};
+use crate::scene::gpu_data::{AirUniform, AirsUniform, MAX_AIRS, MEDIA_COLUMNS, MEDIA_ROWS, media_rows};
 use bytemuck::Zeroable;
 use wgpu::{BindingResource, TextureUsages, TextureViewDimension};
 
@@ -36,6 +36,7 @@ pub struct AirBaker {
     orders: OrdersBaker,
     transmittance: Texture,
     irradiance: Texture,
+    media: Texture,
     values: AirTables,
     airs: Uniform<AirsUniform>,
     linear: wgpu::Sampler,
@@ -59,7 +60,7 @@ impl AirBaker {
         };
         let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("air transmittance"),
-            entries: &[uniform_entry(0), storage],
+            entries: &[uniform_entry(0), storage, loaded_entry(2, TextureViewDimension::D2Array)],
         });
         let module = shaders.load(&gpu.device, "pass/air_transmittance.wgsl")?;
         let pipeline = compute_pipeline(gpu, "air_transmittance", &module, &[&layout], "bake");
@@ -68,15 +69,24 @@ impl AirBaker {
         let transmittance = Texture::with(&gpu.device, "air transmittance", [w, h, MAX_AIRS as u32], 1, HDR, usage);
         let irradiance = OrdersBaker::irradiance_tables(gpu);
         let orders = OrdersBaker::new(gpu, shaders)?;
+        let media = Texture::with(
+            &gpu.device,
+            "media",
+            [MEDIA_COLUMNS as u32, MEDIA_ROWS as u32, MAX_AIRS as u32],
+            1,
+            wgpu::TextureFormat::Rgba32Float,
+            TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST,
+        );
         let airs = Uniform::new(&gpu.device, "Airs", wgpu::BufferUsages::empty());
         let values = AirTables {
             airs: airs.buffer.clone(),
             transmittance: transmittance.array_view(),
             orders: orders.view(),
             irradiance: irradiance.array_view(),
+            media: media.array_view(),
         };
         let linear = linear_sampler(&gpu.device, "air tables", false);
-        Ok(Self { layout, pipeline, orders, transmittance, irradiance, values, airs, linear, slots: Vec::new(), clock: 0 })
+        Ok(Self { layout, pipeline, orders, transmittance, irradiance, media, values, airs, linear, slots: Vec::new(), clock: 0 })
     }
 
     /// The slot of each body of the scene that has air; new and changed media wait for [`AirBaker::record`].
@@ -140,20 +150,30 @@ impl AirBaker {
     pub fn bake(&mut self, gpu: &Gpu, pass: &mut wgpu::ComputePass<'_>) {
         let mut all = AirsUniform::zeroed();
         for (air, slot) in all.list.iter_mut().zip(&self.slots) {
-            *air = AirUniform::new(&slot.medium);
+            *air = AirUniform::new(&slot.medium, &Classes::of(&slot.medium));
         }
         self.airs.write(&gpu.queue, &all);
         let waiting: Vec<u32> = self.slots.iter().enumerate().filter(|(_, s)| !s.baked).map(|(i, _)| i as u32).collect();
         for slot in waiting {
+            self.write_media(gpu, slot);
             self.bake_slot(gpu, pass, slot);
         }
         self.slots.iter_mut().for_each(|s| s.baked = true);
     }
 
+    /// Hands over the tables of a medium that is not formulas.
+    fn write_media(&self, gpu: &Gpu, slot: u32) {
+        let Some(medium) = self.slots.get(slot as usize).map(|s| &s.medium) else { return };
+        let classes = Classes::of(medium);
+        if !classes.direct {
+            self.media.write(&gpu.queue, 0, slot, bytemuck::cast_slice(&media_rows(medium, &classes)));
+        }
+    }
+
     fn bake_slot(&self, gpu: &Gpu, pass: &mut wgpu::ComputePass<'_>, slot: u32) {
         let Some(held) = self.slots.get(slot as usize) else { return };
-        let layer = |dimension| {
-            self.transmittance.texture.create_view(&wgpu::TextureViewDescriptor {
+        let layer = |table: &Texture, dimension| {
+            table.texture.create_view(&wgpu::TextureViewDescriptor {
                 dimension: Some(dimension),
                 base_array_layer: slot,
                 array_layer_count: Some(1),
@@ -167,7 +187,14 @@ impl AirBaker {
             layout: &self.layout,
             entries: &[
                 wgpu::BindGroupEntry { binding: 0, resource: BindingResource::Buffer(air.clone()) },
-                wgpu::BindGroupEntry { binding: 1, resource: BindingResource::TextureView(&layer(TextureViewDimension::D2)) },
+                wgpu::BindGroupEntry {
+                    binding: 1,
+                    resource: BindingResource::TextureView(&layer(&self.transmittance, TextureViewDimension::D2)),
+                },
+                wgpu::BindGroupEntry {
+                    binding: 2,
+                    resource: BindingResource::TextureView(&layer(&self.media, TextureViewDimension::D2Array)),
+                },
             ],
         });
         pass.set_pipeline(&self.pipeline);
@@ -176,7 +203,7 @@ impl AirBaker {
         pass.dispatch_workgroups(w.div_ceil(8), h.div_ceil(8), 1);
         let inputs = Inputs {
             air,
-            transmittance: &layer(TextureViewDimension::D2Array),
+            transmittance: &layer(&self.transmittance, TextureViewDimension::D2Array),
             linear: &self.linear,
             irradiance: &self.values.irradiance,
             slot,
