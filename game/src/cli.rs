@@ -7,7 +7,7 @@ mod bench;
 mod eclipses;
 mod sky;
 
-pub use bench::{BenchEphemerisArgs, BenchKeplerArgs, BenchOrbitArgs, BenchShipsArgs};
+pub use bench::{BenchAirArgs, BenchEphemerisArgs, BenchKeplerArgs, BenchOrbitArgs, BenchShipsArgs};
 pub use eclipses::ProbeEclipsesArgs;
 pub use sky::ProbeSkyArgs;
 
@@ -262,6 +262,9 @@ pub enum Bench {
     /// What the places of the bodies cost: a question, the first year, 1900 to 2100
     #[command(after_help = "Example:\n  syzygy bench ephemeris --json ephemeris.json")]
     Ephemeris(BenchEphemerisArgs),
+    /// What the air costs to draw
+    #[command(after_help = "Example:\n  syzygy bench air --elek --json elek.json")]
+    Air(BenchAirArgs),
 }
 
 /// Arguments that all probes share.

@@ -35,7 +35,7 @@ fn vec4(v: DVec3, w: f64) -> [f32; 4] {
 
 fn ask(medium: &Medium, model: &ViewTable, rays: &[ProbeRay]) -> Vec<ProbeLight> {
     let gpu = tests::gpu();
-    let air = Air { medium: medium.clone(), model: Model::ViewTable(model.clone()) };
+    let air = Air { medium: medium.clone(), bands: None, model: Model::ViewTable(model.clone()) };
     let found = probe(&gpu, &ShaderLibrary::checkout(), &air, rays, &ProbeOptions::default()).expect("it is probed");
     assert_eq!(gpu.take_error(), None);
     found

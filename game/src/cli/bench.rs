@@ -71,3 +71,20 @@ pub struct BenchShipsArgs {
     /// Folders.
     pub places: Places,
 }
+
+/// Arguments of `bench air`.
+#[derive(Clone, Debug, Args)]
+pub struct BenchAirArgs {
+    /// Fly Elek's test flight with the model `view_table`: five tests, a pitch from straight down to straight up
+    #[arg(long)]
+    pub elek: bool,
+    /// At his sizes: pictures of 800×600 and 2560×2048, tables of 256³ and 128³, a frame for every second
+    #[arg(long, requires = "elek")]
+    pub full: bool,
+    /// Write the rows here instead of stdout
+    #[arg(long, value_name = "F.json")]
+    pub json: Option<PathBuf>,
+    #[command(flatten)]
+    /// Folders.
+    pub places: Places,
+}

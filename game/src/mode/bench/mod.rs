@@ -3,6 +3,7 @@
 //! Each bench prints its rows as JSON on stdout (or into `--json`), one object a run, so that tools compare them with others'.
 //! Not here: the numbers that probes give ([`super::probe`]), the tests that hold them.
 
+pub mod elek;
 pub mod ephemeris;
 pub mod kepler;
 pub mod orbit;
@@ -22,6 +23,7 @@ pub fn run(bench: &Bench) -> Result<(), Error> {
         Bench::Orbit(args) => orbit::run(args),
         Bench::Ships(args) => ships::run(args),
         Bench::Ephemeris(args) => ephemeris::run(args),
+        Bench::Air(args) => elek::run(args),
         Bench::Kepler(args) => Ok(orbit_rows::write(&kepler::rows(), args.json.as_deref())?),
     }
 }
