@@ -135,7 +135,7 @@ fn the_frame_s_own_pipeline_gives_it_too() {
         .map(|(altitude, s)| ProbeRay { up: vec4(s.eye.normalize(), *altitude), ray: vec4(s.ray, 0.0), sun: vec4(s.sun, 0.004_65) })
         .collect();
     let medium = Medium { bottom_radius_m: R, top_altitude_m: TOP, ground_albedo: Vec3::ZERO, layers: Vec::new() };
-    let air = Air { medium, model: Model::Gradient(model.clone()) };
+    let air = Air { medium, bands: None, model: Model::Gradient(model.clone()) };
     let gpu = tests::gpu();
     let found = probe(&gpu, &ShaderLibrary::checkout(), &air, &rays, &ProbeOptions::default()).expect("it can be probed");
     assert_eq!(gpu.take_error(), None);

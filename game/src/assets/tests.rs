@@ -531,11 +531,17 @@ fn an_air_that_is_hardly_meant_is_told_and_taken() {
         ("scattering_per_m = [5.8e-6, 13.5e-6, 33.1e-6]", "scattering_per_m = [0.9, 13.5e-6, 33.1e-6]", 3, "no light comes through"),
     ] {
         let warnings = warned(from, to);
-        let told = |w: &String| w.contains(&format!("atmosphere.toml:{line}:")) && w.contains("warning: ") && w.contains(words) && w.contains("help: ");
+        let told = |w: &String| {
+            w.contains(&format!("atmosphere.toml:{line}:")) && w.contains("warning: ") && w.contains(words) && w.contains("help: ")
+        };
         assert!(warnings.iter().any(told), "{to}: {warnings:#?}");
     }
     let rayleigh = |h: &str| {
-        put(dir.path(), AIR_FILE, AIR.replace("kind = \"cornette_shanks\", g = 0.8", "kind = \"rayleigh\"").replace("8000.0", h).as_bytes());
+        put(
+            dir.path(),
+            AIR_FILE,
+            AIR.replace("kind = \"cornette_shanks\", g = 0.8", "kind = \"rayleigh\"").replace("8000.0", h).as_bytes(),
+        );
         load_system(dir.path(), &[], "t").unwrap().warnings.clone()
     };
     assert_eq!(rayleigh("8000.0"), [""; 0]);
