@@ -5,7 +5,7 @@
 // Altitudes are above the datum in m and may be negative; `mu_s` is the cosine of the sun's zenith angle at the point.
 // Made by engine/src/render/pass/air_tables.rs. Not here: light along a ray of sight (lib/air_march.wgsl); all of it together for a surface (lib/daylight.wgsl).
 
-#include "lib/air_path.wgsl"
+#include "lib/air_quadrature.wgsl"
 
 const TRANSMITTANCE_SIZE: vec2<f32> = vec2<f32>(256.0, 64.0);
 const MULTIPLE_SIZE: vec2<f32> = vec2<f32>(64.0, 32.0);

@@ -5,9 +5,10 @@
 
 @group(0) @binding(0) var<uniform> air: Air;
 @group(0) @binding(1) var table: texture_storage_2d<rgba16float, write>;
-@group(0) @binding(2) var transmittance: texture_2d_array<f32>;
-@group(0) @binding(3) var linear: sampler;
-@group(0) @binding(4) var multiple: texture_2d_array<f32>;
+@group(0) @binding(2) var media: texture_2d_array<f32>;
+@group(0) @binding(3) var transmittance: texture_2d_array<f32>;
+@group(0) @binding(4) var linear: sampler;
+@group(0) @binding(5) var multiple: texture_2d_array<f32>;
 
 const DIRECTIONS: u32 = 64u;
 const STEPS: u32 = 24u;
@@ -24,7 +25,7 @@ fn bake(@builtin(workgroup_id) texel: vec3<u32>, @builtin(local_invocation_index
     let path = air_path(air, vec3<f32>(0.0, 0.0, 1.0), min(point.x, air.shape.y - 1.0), ray);
     let sun = AirSun(vec3<f32>(sqrt(max(1.0 - point.y * point.y, 0.0)), 0.0, point.y), 0.0047, 1.0, 1.0);
     var alone: Body;
-    light[index] = air_march(air, transmittance, multiple, linear, 0, path, path.exit, ray, sun, alone, vec4<f32>(0.0), STEPS).radiance;
+    light[index] = air_march(air, media, transmittance, multiple, linear, 0, path, path.exit, ray, sun, alone, vec4<f32>(0.0), STEPS).radiance;
     workgroupBarrier();
     for (var half = DIRECTIONS / 2u; half > 0u; half /= 2u) {
         if index < half {

@@ -7,11 +7,12 @@
 
 @group(0) @binding(0) var<uniform> air: Air;
 @group(0) @binding(1) var table: texture_storage_2d<rgba16float, write>;
-@group(0) @binding(2) var transmittance: texture_2d_array<f32>;
-@group(0) @binding(3) var linear: sampler;
+@group(0) @binding(2) var media: texture_2d_array<f32>;
+@group(0) @binding(3) var transmittance: texture_2d_array<f32>;
+@group(0) @binding(4) var linear: sampler;
 
 const DIRECTIONS: u32 = 64u;
-const STEPS: u32 = 24u;
+const PANELS: u32 = 4u;
 const SUN_RAD: f32 = 0.0047;
 
 var<workgroup> second: array<vec3<f32>, DIRECTIONS>;
@@ -30,26 +31,35 @@ fn bake(@builtin(workgroup_id) texel: vec3<u32>, @builtin(local_invocation_index
     let hits = path.ground >= 0.0;
     let end = select(path.exit, path.ground, hits);
 
-    let steps = air_steps(path, end);
-    var through = vec3<f32>(1.0);
+    var depth = vec3<f32>(0.0);
     var light = vec3<f32>(0.0);
     var scattered = vec3<f32>(0.0);
-    var from_s = 0.0;
-    for (var i = 1u; i <= STEPS; i++) {
-        let to_s = air_step(steps, f32(i) / f32(STEPS));
-        let s = 0.5 * (from_s + to_s);
-        let h = air_altitude(air, path, s);
-        let c = (path.radius * mu_s + s * dot(ray, sun)) / (air.shape.x + h);
-        let density = air_density(air, h);
-        let extinction = max(air.extinction * density, vec3<f32>(1e-20));
-        let kept = exp(-extinction * (to_s - from_s));
-        let gain = through * (air.scattering * density) * (1.0 - kept) / extinction;
-        let lit = visible_above_limb(SUN_RAD, sun_elevation(air.shape.x, h, c)) * air_sun_transmittance(air, transmittance, linear, 0, h, c);
-        light += gain * lit / 12.5663706144;
-        scattered += gain;
-        through *= kept;
-        from_s = to_s;
+    var begin = 0.0;
+    for (var k = 0u; k < 24u && begin < end; k++) {
+        let next = air_next_cut(air, path, begin, end, NO_CUTS, NO_CUTS);
+        for (var i = 0u; i < PANELS; i++) {
+            let nodes = air_nodes(air, path, begin, next, i, PANELS);
+            var extinction: mat4x3<f32>;
+            var gain: mat4x3<f32>;
+            for (var j = 0u; j < 4u; j++) {
+                let matter = air_matter(air, media, 0, nodes.altitude[j]);
+                extinction[j] = matter.extinction * nodes.span[j];
+                gain[j] = (matter.scattering * vec4<f32>(1.0)) * (nodes.span[j] * GAUSS_WEIGHT[j]);
+            }
+            let run = extinction * GAUSS_RUN;
+            for (var j = 0u; j < 4u; j++) {
+                let h = nodes.altitude[j];
+                let c = (path.radius * mu_s + nodes.s[j] * dot(ray, sun)) / (air.shape.x + h);
+                let lit = visible_above_limb(SUN_RAD, sun_elevation(air.shape.x, h, c)) * air_sun_transmittance(air, transmittance, linear, 0, h, c);
+                let share = exp(-depth - run[j]) * gain[j];
+                light += share * lit / 12.5663706144;
+                scattered += share;
+            }
+            depth += extinction * GAUSS_WEIGHT;
+        }
+        begin = next;
     }
+    let through = exp(-depth);
     if hits {
         let c = (path.radius * mu_s + end * dot(ray, sun)) / air.shape.x;
         light += through * air.albedo.rgb / 3.14159265359 * max(c, 0.0) * air_sun_transmittance(air, transmittance, linear, 0, 0.0, c);

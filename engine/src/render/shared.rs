@@ -3,11 +3,11 @@
 //! | group | holds | who makes it |
 //! |---|---|---|
 //! | 0 | 0 `Frame`, 1 `Bodies`, 2 `Exposure` (all uniform; `shaders/lib/frame.wgsl`) | [`Shared`], each frame |
-//! | 1 | 0 airs (uniform), 1 transmittance, 2 multiple scattering, 3 irradiance (2-D arrays, a layer per air slot), 4 linear sampler, 5 shadow map, 6 comparison sampler, 7 shadow (uniform) | [`Shared::light_group`], from the values of the air-table and shadow passes |
+//! | 1 | 0 airs (uniform), 1 transmittance, 2 multiple scattering, 3 irradiance (2-D arrays, a layer per air slot), 4 linear sampler, 5 shadow map, 6 comparison sampler, 7 shadow (uniform), 8 media (2-D array, loaded) | [`Shared::light_group`], from the values of the air-table and shadow passes |
 //! | 2, 3 | the pass's own | the pass |
 
 use super::maps::MapStore;
-use super::pipeline::{depth_entry, sampler_entry, texture_entry, uniform_entry};
+use super::pipeline::{depth_entry, loaded_entry, sampler_entry, texture_entry, uniform_entry};
 use super::report::{AirReport, FrameReport, PassReport};
 use super::targets::{DEPTH, Targets};
 use crate::gpu::Gpu;
@@ -29,6 +29,8 @@ pub struct AirTables {
     pub multiple: wgpu::TextureView,
     /// Illuminance of the sky on horizontal ground, 2-D array.
     pub irradiance: wgpu::TextureView,
+    /// Media that are not formulas (`shaders/lib/medium.wgsl`), 2-D array, not filterable.
+    pub media: wgpu::TextureView,
 }
 
 /// The ship's shadow map, as the later passes see it.
@@ -94,6 +96,7 @@ impl Shared {
                 depth_entry(5),
                 sampler_entry(6, wgpu::SamplerBindingType::Comparison),
                 uniform_entry(7),
+                loaded_entry(8, array),
             ],
         });
         let frame = Uniform::new(d, "Frame", BufferUsages::empty());
@@ -143,6 +146,7 @@ impl Shared {
                 entry(5, TextureView(&shadow.depth)),
                 entry(6, Sampler(&self.compare)),
                 entry(7, shadow.uniform.as_entire_binding()),
+                entry(8, TextureView(&air.media)),
             ],
         })
     }

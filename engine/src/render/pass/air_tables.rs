@@ -3,21 +3,24 @@
 //! A slot (a layer of three texture arrays) belongs to a body's id; the slot longest unused is given away when all are taken.
 //! What the tables mean and how to ask them is in `shaders/lib/air.wgsl`; bodies without air have no slot and ask nothing.
 
-use crate::air::Medium;
+use crate::air::{Classes, Medium};
 use crate::gpu::buffer::Uniform;
 use crate::gpu::texture::{Texture, linear_sampler};
 use crate::gpu::{Gpu, ShaderLibrary};
 use crate::render::RenderError;
-use crate::render::pipeline::{compute_pipeline, sampler_entry, texture_entry, uniform_entry};
+use crate::render::pipeline::{compute_pipeline, loaded_entry, sampler_entry, texture_entry, uniform_entry};
 use crate::render::shared::{AirTables, FrameContext};
 use crate::render::targets::HDR;
 use crate::scene::Snapshot;
-use crate::scene::gpu_data::{AirUniform, AirsUniform, MAX_AIRS};
+use crate::scene::gpu_data::{AirUniform, AirsUniform, MAX_AIRS, MEDIA_COLUMNS, MEDIA_ROWS, media_rows};
 use bytemuck::Zeroable;
 use wgpu::{BindingResource, TextureUsages, TextureViewDimension};
 
 /// Texels of the tables, as in `shaders/lib/air.wgsl`: transmittance, multiple scattering, irradiance.
 const SIZES: [[u32; 2]; 3] = [[256, 64], [64, 32], [64, 16]];
+
+/// Bindings of each bake.
+const ENTRIES: [usize; 3] = [3, 5, 6];
 
 /// Whose air a slot holds.
 struct Slot {
@@ -32,6 +35,7 @@ pub struct AirBaker {
     layouts: [wgpu::BindGroupLayout; 3],
     pipelines: [wgpu::ComputePipeline; 3],
     tables: [Texture; 3],
+    media: Texture,
     values: AirTables,
     airs: Uniform<AirsUniform>,
     linear: wgpu::Sampler,
@@ -57,12 +61,13 @@ impl AirBaker {
         let entries = [
             uniform_entry(0),
             storage,
-            texture_entry(2, array),
-            sampler_entry(3, wgpu::SamplerBindingType::Filtering),
-            texture_entry(4, array),
+            loaded_entry(2, array),
+            texture_entry(3, array),
+            sampler_entry(4, wgpu::SamplerBindingType::Filtering),
+            texture_entry(5, array),
         ];
         // Each bake reads the tables before it.
-        let layouts = [2, 4, 5].map(|count| {
+        let layouts = ENTRIES.map(|count| {
             gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("air bake"), entries: &entries[..count] })
         });
         let bake = |layout: &wgpu::BindGroupLayout, file: &str| -> Result<_, RenderError> {
@@ -75,15 +80,24 @@ impl AirBaker {
         ];
         let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::STORAGE_BINDING | TextureUsages::COPY_SRC;
         let tables = SIZES.map(|[w, h]| Texture::with(&gpu.device, "air table", [w, h, MAX_AIRS as u32], 1, HDR, usage));
+        let media = Texture::with(
+            &gpu.device,
+            "media",
+            [MEDIA_COLUMNS as u32, MEDIA_ROWS as u32, MAX_AIRS as u32],
+            1,
+            wgpu::TextureFormat::Rgba32Float,
+            TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST,
+        );
         let airs = Uniform::new(&gpu.device, "Airs", wgpu::BufferUsages::empty());
         let values = AirTables {
             airs: airs.buffer.clone(),
             transmittance: tables[0].array_view(),
             multiple: tables[1].array_view(),
             irradiance: tables[2].array_view(),
+            media: media.array_view(),
         };
         let linear = linear_sampler(&gpu.device, "air tables", false);
-        Ok(Self { layouts, pipelines, tables, values, airs, linear, slots: Vec::new(), clock: 0 })
+        Ok(Self { layouts, pipelines, tables, media, values, airs, linear, slots: Vec::new(), clock: 0 })
     }
 
     /// The slot of each body of the scene that has air; new and changed media wait for [`AirBaker::record`].
@@ -147,14 +161,24 @@ impl AirBaker {
     pub fn bake(&mut self, gpu: &Gpu, pass: &mut wgpu::ComputePass<'_>) {
         let mut all = AirsUniform::zeroed();
         for (air, slot) in all.list.iter_mut().zip(&self.slots) {
-            *air = AirUniform::new(&slot.medium);
+            *air = AirUniform::new(&slot.medium, &Classes::of(&slot.medium));
         }
         self.airs.write(&gpu.queue, &all);
         let waiting: Vec<u32> = self.slots.iter().enumerate().filter(|(_, s)| !s.baked).map(|(i, _)| i as u32).collect();
         for slot in waiting {
+            self.write_media(gpu, slot);
             self.bake_slot(gpu, pass, slot);
         }
         self.slots.iter_mut().for_each(|s| s.baked = true);
+    }
+
+    /// Hands over the tables of a medium that is not formulas.
+    fn write_media(&self, gpu: &Gpu, slot: u32) {
+        let Some(medium) = self.slots.get(slot as usize).map(|s| &s.medium) else { return };
+        let classes = Classes::of(medium);
+        if !classes.direct {
+            self.media.write(&gpu.queue, 0, slot, bytemuck::cast_slice(&media_rows(medium, &classes)));
+        }
     }
 
     fn bake_slot(&self, gpu: &Gpu, pass: &mut wgpu::ComputePass<'_>, slot: u32) {
@@ -167,16 +191,17 @@ impl AirBaker {
             })
         };
         let outputs = [0, 1, 2].map(|i| layer(&self.tables[i], TextureViewDimension::D2));
-        let inputs = [0, 1].map(|i| layer(&self.tables[i], TextureViewDimension::D2Array));
+        let inputs = [&self.media, &self.tables[0], &self.tables[1]].map(|t| layer(t, TextureViewDimension::D2Array));
         let size = size_of::<AirUniform>() as u64;
         let air = wgpu::BufferBinding { buffer: &self.airs.buffer, offset: u64::from(slot) * size, size: wgpu::BufferSize::new(size) };
-        for (i, count) in [2, 4, 5].into_iter().enumerate() {
+        for (i, count) in ENTRIES.into_iter().enumerate() {
             let resources = [
                 BindingResource::Buffer(air.clone()),
                 BindingResource::TextureView(&outputs[i]),
                 BindingResource::TextureView(&inputs[0]),
-                BindingResource::Sampler(&self.linear),
                 BindingResource::TextureView(&inputs[1]),
+                BindingResource::Sampler(&self.linear),
+                BindingResource::TextureView(&inputs[2]),
             ];
             let entries: Vec<_> =
                 (0..).zip(resources).take(count).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
