@@ -128,7 +128,9 @@ impl Error {
     fn exit_code(&self) -> ExitCode {
         use studio::StudioError::Gpu;
         match self {
-            Self::Sky(probe::sky::SkyError::Gpu(_)) | Self::Shot(shot::ShotError::Studio(Gpu(_))) | Self::Headless(headless::HeadlessError::Studio(Gpu(_))) => ExitCode::from(2),
+            Self::Sky(probe::sky::SkyError::Gpu(_))
+            | Self::Shot(shot::ShotError::Studio(Gpu(_)))
+            | Self::Headless(headless::HeadlessError::Studio(Gpu(_))) => ExitCode::from(2),
             _ => ExitCode::FAILURE,
         }
     }
