@@ -77,7 +77,8 @@ fn mirrored_structs_have_the_layout_of_their_twins() {
                 tent_rise,
                 tent_top,
                 tent_fall,
-                asymmetry
+                asymmetry,
+                orders
             }),
         ),
         ("lib/medium.wgsl", "Airs", fields!(rust::AirsUniform { list })),

@@ -4,6 +4,23 @@ use super::Places;
 use clap::Args;
 use std::path::PathBuf;
 
+/// Arguments of `bench air`.
+#[derive(Clone, Debug, Args)]
+pub struct BenchAirArgs {
+    /// Judge the colours: ΔE2000 against all wavelengths
+    #[arg(long, required = true)]
+    pub spectral: bool,
+    /// Write the rows here instead of stdout
+    #[arg(long, value_name = "F.json")]
+    pub json: Option<PathBuf>,
+    /// Only these bodies, folders of assets/bodies; all where none is named
+    #[arg(long, value_name = "NAME")]
+    pub body: Vec<String>,
+    #[command(flatten)]
+    /// Folders.
+    pub places: Places,
+}
+
 /// Arguments of `bench orbit`.
 #[derive(Clone, Debug, Args)]
 pub struct BenchOrbitArgs {
