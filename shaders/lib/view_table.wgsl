@@ -120,11 +120,9 @@ fn view_table_light(
     body: Body, air: Air, vt: ViewTable, scatter: texture_3d<f32>, depth: texture_2d<f32>, linear: sampler,
     star: vec4<f32>, view: SkyView,
 ) -> AirLight {
-    let path = air_path(air, body.up.xyz, body.up.w, view.ray);
+    let path = graded_above(air, air_path(air, body.up.xyz, body.up.w, view.ray), view.datum);
     let end = sky_end(path, view);
-    // On the datum or below it, with nothing drawn there, what looks down sees the ground at once.
-    let below = path.altitude <= 0.0 && path.slope < 0.0 && view.datum;
-    if end <= 0.0 || below {
+    if end <= 0.0 {
         return AirLight(vec3<f32>(0.0), vec3<f32>(1.0));
     }
     let mu = path.slope / max(path.radius, 1.0);

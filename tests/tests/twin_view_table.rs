@@ -35,7 +35,7 @@ fn vec4(v: DVec3, w: f64) -> [f32; 4] {
 
 fn ask(medium: &Medium, model: &ViewTable, rays: &[ProbeRay]) -> Vec<ProbeLight> {
     let gpu = tests::gpu();
-    let air = Air { medium: medium.clone(), model: Model::ViewTable(model.clone()) };
+    let air = Air { medium: medium.clone(), bands: None, model: Model::ViewTable(model.clone()) };
     let found = probe(&gpu, &ShaderLibrary::checkout(), &air, rays, &ProbeOptions::default()).expect("it is probed");
     assert_eq!(gpu.take_error(), None);
     found
@@ -111,12 +111,15 @@ fn the_difference_of_two_depths_keeps_its_digits() {
                 let r = medium.bottom_radius_m + h;
                 let there = (r * r + 2.0 * r * mu * distance + distance * distance).sqrt() - medium.bottom_radius_m;
                 // Only what lies above the ground on the way, too.
-                if there < 0.0 || there > medium.top_altitude_m || (mu < 0.0 && distance > -r * mu && r * (1.0 - mu * mu).sqrt() < medium.bottom_radius_m) {
+                if there < 0.0
+                    || there > medium.top_altitude_m
+                    || (mu < 0.0 && distance > -r * mu && r * (1.0 - mu * mu).sqrt() < medium.bottom_radius_m)
+                {
                     continue;
                 }
                 rays.push(probe_ray(h, f64::acos(mu), 0.6, 20.0, distance));
                 let ray = DVec3::new((1.0 - mu * mu).sqrt(), 0.0, mu);
-                truths.push((h, mu, distance, reference::optical_depth(&medium, DVec3::Z * r, ray, (0.0, distance), 2000)));
+                truths.push((h, mu, distance, reference::optical_depth(&medium, DVec3::Z * r, ray, (0.0, distance), 1e-6)));
             }
         }
     }
@@ -146,9 +149,11 @@ fn before_a_surface_there_is_its_share_of_the_air() {
             rays.push(probe_ray(h, phi, 0.6, 0.0, distance));
             let (from, ray) = (DVec3::Z * (medium.bottom_radius_m + h), DVec3::new(phi.sin(), 0.0, phi.cos()));
             // What is seen to the end of the air, less what is seen from the surface on.
-            let seen = |from: DVec3| reference::single_scattering(&medium, from, ray, sun, ViewTable::SUN_RAD, 1500);
-            let through = (-reference::optical_depth(&medium, from, ray, (0.0, distance), 500)).exp();
-            truths.push(seen(from).single - through * seen(from + ray * distance).single);
+            let sight = |from_m: DVec3| reference::Ray { from_m, direction: ray, sun, sun_rad: ViewTable::SUN_RAD, occluders: Vec::new() };
+            let only_once = reference::Options { max_walks: 0, ..Default::default() };
+            let seen = |from: DVec3| reference::radiance(&medium, &[sight(from)], &only_once)[0].single;
+            let through = (-reference::optical_depth(&medium, from, ray, (0.0, distance), 1e-6)).exp();
+            truths.push(seen(from) - through * seen(from + ray * distance));
         }
     }
     for ((light, truth), ray) in ask(&medium, &ViewTable::default(), &rays).iter().zip(&truths).zip(&rays) {
@@ -186,7 +191,8 @@ fn nothing_is_nan_wherever_one_stands() {
             }
         }
         for (ray, light) in rays.iter().zip(ask(&medium, &ViewTable { samples: 12, ..ViewTable::default() }, &rays)) {
-            let fine = light.radiance.iter().all(|x| x.is_finite() && *x >= 0.0) && light.transmittance.iter().all(|x| (0.0..=1.0).contains(x));
+            let fine =
+                light.radiance.iter().all(|x| x.is_finite() && *x >= 0.0) && light.transmittance.iter().all(|x| (0.0..=1.0).contains(x));
             assert!(fine, "{ray:?}: {light:?}");
         }
     }

@@ -65,6 +65,7 @@ pub mod body;
 pub mod fault;
 pub mod fields;
 pub mod overlay;
+pub mod planet;
 pub mod reader;
 pub mod relief;
 pub mod reload;
@@ -101,6 +102,11 @@ impl Assets {
     /// A system; `progress` hears how much is done, 0 … 1, and of what.
     pub fn system(&self, key: &str, progress: &(dyn Fn(f32, &str) + Sync)) -> Result<Arc<System>, AssetErrors> {
         system::load_system(&self.overlay, key, progress)
+    }
+
+    /// A system with its airs read anew, everything else as it is.
+    pub fn airs(&self, system: &System) -> Result<Arc<System>, AssetErrors> {
+        system::reread_airs(&self.overlay, system)
     }
 
     /// A ship.

@@ -99,11 +99,7 @@ impl Tables {
             .device
             .create_texture(&wgpu::TextureDescriptor {
                 label: Some("view table: scattering"),
-                size: wgpu::Extent3d {
-                    width: settings.view_size,
-                    height: settings.sun_size,
-                    depth_or_array_layers: settings.height_size,
-                },
+                size: wgpu::Extent3d { width: settings.view_size, height: settings.sun_size, depth_or_array_layers: settings.height_size },
                 mip_level_count: 1,
                 sample_count: 1,
                 dimension: wgpu::TextureDimension::D3,
