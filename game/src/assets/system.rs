@@ -1,6 +1,6 @@
 //! A system from its file: that of every body that it lists is read and checked, all faults are gathered, and only a system without any is built.
 
-use super::atmosphere::{AirSpec, Datum, read_air};
+use super::atmosphere::{AirSpec, Datum, Files, read_air};
 use super::body::{BodySpec, read_body};
 use super::fault::{AssetErrors, At, Fault, nearest};
 use super::overlay::{Overlay, read_text};
@@ -260,7 +260,7 @@ fn read_atmosphere(overlay: &Overlay, body: &str, datum: Datum, faults: &Faults)
     if let Some(physics) = tree.get("physics") {
         physics.value.digest(&mut hash);
     }
-    (read_air(&Reader::new(&tree, faults), datum), hash.finalize().to_hex().to_string())
+    (read_air(&Reader::new(&tree, faults), datum, &Files { overlay, body }), hash.finalize().to_hex().to_string())
 }
 
 /// Feeds a file's values to the hash, but for what a flight does not depend on.
