@@ -105,12 +105,12 @@ fn limb_side(sides: vec2<f32>, nu: f32) -> f32 {
 // ∫ density ds over the lit part from the path's start to `end`, planet radii. Steps are even in the bake; else they grow with the
 // distance from the lowest point.
 fn limb_column(air: Air, path: AirPath, end: f32, exponent: f32, shadow: LimbShadow, count: u32, even: bool) -> f32 {
-    let steps = air_steps(path, end);
+    let steps = graded_steps(path, end);
     var sum = 0.0;
     var from_s = 0.0;
     for (var i = 1u; i <= count; i++) {
         let x = f32(i) / f32(count);
-        let to_s = select(air_step(steps, x), end * x, even);
+        let to_s = select(graded_step(steps, x), end * x, even);
         let table = mix(limb_lit(shadow.near, from_s, to_s), limb_lit(shadow.far, from_s, to_s), shadow.side);
         let lit = mix(table, limb_lit(shadow.exact, from_s, to_s), shadow.truth);
         sum += limb_density(air_altitude(air, path, 0.5 * (from_s + to_s)) / air.shape.y, exponent) * lit * (to_s - from_s);
@@ -126,7 +126,7 @@ fn limb_gathered(
 ) -> vec3<f32> {
     let scale = sky.settings[0];
     let ground = path.ground >= 0.0;
-    let mu = path.slope / path.radius;
+    let mu = path.slope / max(path.radius, 1.0);
     let mu_s = dot(path.up, light);
     let nu = dot(ray, light);
     let sides = limb_sides(mu, mu_s);

@@ -33,7 +33,7 @@ struct SkyView {
 // A ray to probe, and what it brings.
 struct ProbeRay {
     up: vec4<f32>,   // unit zenith of the eye, its altitude, m
-    ray: vec4<f32>,  // unit direction of sight, 0
+    ray: vec4<f32>,  // unit direction of sight, distance to a surface seen (0: none, the datum ends the ray)
     sun: vec4<f32>,  // unit direction to the sun, its angular radius, rad
 }
 struct ProbeLight {
@@ -96,7 +96,8 @@ fn sky_probe_body(body: Body, asked: ProbeRay) -> Body {
     return there;
 }
 fn sky_probe_view(asked: ProbeRay) -> SkyView {
-    return SkyView(asked.ray.xyz, 1e30, true, 0.0);
+    let seen = asked.ray.w > 0.0;
+    return SkyView(asked.ray.xyz, select(1e30, asked.ray.w, seen), !seen, 0.0);
 }
 
 // Light and transmittance laid over a stored colour; `sum` is over `rays` rays.

@@ -12,6 +12,7 @@ pub mod view_space;
 pub mod view_table;
 
 use super::Medium;
+use super::spectral::Bands;
 use serde::{Deserialize, Serialize};
 
 pub use gradient::Gradient;
@@ -48,6 +49,8 @@ impl Default for Model {
 pub struct Air {
     /// The optical layers. A stylised model may have none: then nothing reddens the sun and no sky lights the ground.
     pub medium: Medium,
+    /// The same in six bands, where [`Model::Physical`] is to draw it by those; everything else draws by `medium`.
+    pub bands: Option<Box<Bands>>,
     /// The model and its settings.
     pub model: Model,
 }
@@ -55,6 +58,6 @@ pub struct Air {
 impl From<Medium> for Air {
     /// The default model.
     fn from(medium: Medium) -> Self {
-        Self { medium, model: Model::default() }
+        Self { medium, bands: None, model: Model::default() }
     }
 }

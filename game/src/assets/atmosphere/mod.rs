@@ -5,9 +5,9 @@
 
 pub mod keys;
 pub mod layers;
+pub mod optics;
 pub mod plausible;
 
-use super::body::vec3;
 use super::fault::Fault;
 use super::fields;
 use super::overlay::{DATA_MAX, Overlay, read_bytes};
@@ -15,7 +15,11 @@ use super::reader::{ANY, Reader};
 use super::tree::{Data, Node};
 use engine::air::density::Lapse;
 use engine::air::model::{ColourMap, Gradient};
-use engine::air::{Air, Column, ColumnSpec, MediumSpec, Model, RangeError};
+use engine::air::spectral::SpectralMedium;
+use engine::air::{Air, Column, ColumnSpec, Model, RangeError};
+use engine::light::spectrum::Starlight;
+use engine::units::NM;
+use optics::Channels;
 
 /// Air as its file describes it.
 #[derive(Clone, Debug, Default)]
@@ -45,24 +49,26 @@ impl Datum {
     }
 }
 
-/// Where the files lie that an air names.
+/// What an air is seen by, and where the files lie that it names.
 #[derive(Clone, Copy)]
-pub struct Files<'a> {
+pub struct Setting<'a> {
     /// The assets with mods over them.
     pub overlay: &'a Overlay,
     /// The body's key.
     pub body: &'a str,
+    /// The light under which its colours are found.
+    pub star: &'a Starlight,
 }
 
 /// Reads the file: faults and warnings go to the reader.
-pub fn read_air(r: &Reader<'_>, datum: Datum, files: &Files<'_>) -> AirSpec {
+pub fn read_air(r: &Reader<'_>, datum: Datum, setting: &Setting<'_>) -> AirSpec {
     let before = r.errors();
     fields::check(r.again(), keys::ATMOSPHERE);
     if r.errors() > before {
         return AirSpec::default();
     }
     let column = r.maybe_table("physics").and_then(|t| tell(&t, "", Column::new(&column_of(&t, datum))));
-    let look = look_of(r, datum, files);
+    let look = look_of(r, datum, setting);
     if let Some(look) = look.as_ref().filter(|_| r.errors() == before) {
         plausible::suspicions(r.node, look, column.as_ref(), datum.gravity_m_s2).into_iter().for_each(|s| r.fault(s));
     }
@@ -102,7 +108,7 @@ fn column_of(r: &Reader<'_>, datum: Datum) -> ColumnSpec {
 }
 
 /// The look. What each model cannot do without is asked for here.
-fn look_of(r: &Reader<'_>, datum: Datum, files: &Files<'_>) -> Option<Air> {
+fn look_of(r: &Reader<'_>, datum: Datum, setting: &Setting<'_>) -> Option<Air> {
     let before = r.errors();
     let word = r.node.get("model").and_then(|e| e.value.text()).unwrap_or("physical");
     if word == "none" {
@@ -110,22 +116,26 @@ fn look_of(r: &Reader<'_>, datum: Datum, files: &Files<'_>) -> Option<Air> {
     }
     let top_altitude_m = r.number("top_altitude_m", ANY);
     let lit_by_layers = matches!(word, "physical" | "view_table");
-    let ground_albedo = if lit_by_layers || r.has("ground_albedo") { vec3(r.numbers("ground_albedo", ANY)) } else { glam::Vec3::ZERO };
+    let ground_albedo = if lit_by_layers || r.has("ground_albedo") { r.numbers("ground_albedo", ANY) } else { [0.0; 3] };
     if lit_by_layers {
         r.needed("layers", "a list of tables [[layers]], or `layers = []` for a vacuum");
     }
-    let layers = layers::read(r, datum);
-    let model = model_of(r, word, files);
-    let spec = MediumSpec { top_altitude_m, ground_albedo, layers };
-    let medium = tell(r, "", spec.build(datum.radius_m));
+    let wavelengths_m = r.has("wavelengths_nm").then(|| r.numbers("wavelengths_nm", ANY).map(|nm| nm * NM));
+    let wavelengths_m = wavelengths_m.unwrap_or(SpectralMedium::WAVELENGTHS_M);
+    let layers = layers::read(r, datum, Channels { wavelengths_m });
+    let model = model_of(r, word, setting);
+    let medium = SpectralMedium { bottom_radius_m: datum.radius_m, top_altitude_m, ground_albedo, wavelengths_m, layers };
+    let spectral = word == "physical" && r.node.get("spectrum").and_then(|e| e.value.text()) == Some("spectral");
+    let drawn = tell(r, "", medium.draw(spectral, setting.star));
     if r.errors() > before {
         return None;
     }
-    Some(Air { medium: medium?, model: model? })
+    let (medium, bands) = drawn?;
+    Some(Air { medium, bands, model: model? })
 }
 
 /// The model that a word names, with the settings in the table of that name.
-fn model_of(r: &Reader<'_>, word: &str, files: &Files<'_>) -> Option<Model> {
+fn model_of(r: &Reader<'_>, word: &str, setting: &Setting<'_>) -> Option<Model> {
     let table = r.node.get(word).map(|e| &e.value).filter(|n| matches!(n.data, Data::Table(_)));
     let mut settings = table.map_or_else(|| serde_json::json!({}), Node::json);
     settings["model"] = word.into();
@@ -136,7 +146,7 @@ fn model_of(r: &Reader<'_>, word: &str, files: &Files<'_>) -> Option<Model> {
     match serde_json::from_value::<Model>(settings) {
         Ok(mut model) => {
             if let Model::Gradient(gradient) = &mut model {
-                painted(table, gradient, files, r)?;
+                painted(table, gradient, setting, r)?;
             }
             let errors = errors_of(&model);
             tell(r, &format!("{word}."), if errors.is_empty() { Ok(model) } else { Err(errors) })
@@ -160,13 +170,13 @@ fn errors_of(model: &Model) -> Vec<RangeError> {
 }
 
 /// The pictures that the table `[gradient]` names; what it leaves out is the model's own.
-fn painted(table: Option<&Node>, gradient: &mut Gradient, files: &Files<'_>, r: &Reader<'_>) -> Option<()> {
+fn painted(table: Option<&Node>, gradient: &mut Gradient, setting: &Setting<'_>, r: &Reader<'_>) -> Option<()> {
     let mut whole = Some(());
     for (key, map) in keys::MAPS.into_iter().zip([&mut gradient.shell_map, &mut gradient.ground_map]) {
         let Some(entry) = table.and_then(|t| t.get(key)) else { continue };
         let name = entry.value.text().unwrap_or_default();
-        let relative = format!("bodies/{}/{name}", files.body);
-        let fault = match files.overlay.find(&relative).filter(|_| !name.contains("..")) {
+        let relative = format!("bodies/{}/{name}", setting.body);
+        let fault = match setting.overlay.find(&relative).filter(|_| !name.contains("..")) {
             None => Fault::at(&entry.value.at, format!("`gradient.{key}` = \"{name}\": expected a PNG beside this file"))
                 .help(Some(format!("looked for {relative} in the assets and in the mods"))),
             Some(path) => match read_bytes(&path, DATA_MAX).and_then(|bytes| painting(&bytes).map_err(|what| Fault::file(&path, what))) {
