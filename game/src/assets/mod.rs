@@ -225,4 +225,4 @@ impl Assets {
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
