@@ -118,6 +118,16 @@ impl System {
             eclipses: Almanac::default(),
         }
     }
+    /// The same with another look of a body's air.
+    #[must_use]
+    pub fn with_look(&self, body: BodyId, look: Option<Air>) -> Self {
+        let mut new = self.clone();
+        if let Some(body) = new.bodies.get_mut(body.index()) {
+            body.look = look;
+        }
+        new
+    }
+
     /// The body behind a handle.
     pub fn body(&self, id: BodyId) -> &Body {
         &self.bodies[id.index()]

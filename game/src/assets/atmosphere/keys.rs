@@ -27,6 +27,7 @@ pub const ATMOSPHERE: &[Field] = &[
     may("thickness", Kind::Table(THICKNESS), "settings of the model \"thickness\""),
     may("limb_table", Kind::Table(LIMB_TABLE), "settings of the model \"limb_table\""),
     may("view_table", Kind::Table(VIEW_TABLE), "settings of the model \"view_table\""),
+    may("gradient", Kind::Table(GRADIENT), "settings of the model \"gradient\""),
 ];
 
 /// The models, and none.
@@ -35,6 +36,7 @@ pub const MODELS: &[(&str, &str)] = &[
     ("thickness", "as bright as the air is thick, shadowed air a fifth of that [Josth]"),
     ("limb_table", "a table over two cosines at the shell's top, added to the picture [Dolan]"),
     ("view_table", "single scattering from a table by height and two angles [Elek]"),
+    ("gradient", "colours of two small painted maps, without physics"),
     ("none", "nothing is seen of it; what drags is kept"),
 ];
 
@@ -216,4 +218,19 @@ const VIEW_TABLE: &[Field] = &[
     may("samples", Kind::Whole(Span::log(2.0, 500.0)), "samples along a ray of sight"),
     may("depth_samples", Kind::Whole(Span::log(2.0, 500.0)), "samples of an optical depth"),
     may("ambient_samples", Kind::Whole(Span::log(2.0, 128.0)), "directions of the sky's light, each way"),
+];
+
+/// The keys of [`GRADIENT`] that name pictures: of the shell, of the ground.
+pub const MAPS: [&str; 2] = ["shell_map", "ground_map"];
+
+/// Settings of the model `gradient`.
+const GRADIENT: &[Field] = &[
+    may("stretch", Kind::Number(Span::linear(0.0, 2.0)), "by how much day reaches beyond the terminator: where sunset begins"),
+    may("fade_stretch", Kind::Number(Span::linear(0.0, 2.0)), "by how much more the air is seen at all"),
+    may("visibility_m", Kind::Number(Span::log(1.0, 1.0e9)), "ground nearer than this is clear"),
+    may("transparency", Kind::Number(Span::linear(0.0, 1.0)), "how strong the air's colour can become over the ground"),
+    may("brightness", Kind::Number(Span::log(0.0, 100.0)), "of the map's white; 1 is a white surface that faces the sun"),
+    may("opacity", Kind::Number(Span::linear(0.0, 1.0)), "how much of the sky behind the shell is hidden where it is strongest"),
+    may(MAPS[0], Kind::File, "PNG, 32 × 16 texels as a rule. Left: away from the sun, right: toward it; bottom: at the surface, top: at the edge"),
+    may(MAPS[1], Kind::File, "PNG, 32 × 2 texels. Top row: the air's colour; bottom row: by what the sun's is multiplied. Left: midnight, right: noon"),
 ];
