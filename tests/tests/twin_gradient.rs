@@ -81,7 +81,7 @@ fn light_is_the_same_on_thousands_of_rays() {
             })
             .collect();
         let medium = Medium { bottom_radius_m: R, top_altitude_m: TOP, ground_albedo: Vec3::ZERO, layers: Vec::new() };
-        let air = Air { medium, model: Model::Gradient(model.clone()) };
+        let air = Air { model: Model::Gradient(model.clone()), ..Air::from(medium) };
         let found = probe(&gpu, &ShaderLibrary::checkout(), &air, &rays, &ProbeOptions::default()).expect("it can be probed");
         assert_eq!(gpu.take_error(), None);
         let (mut worst, mut lit) = (0.0_f64, 0);

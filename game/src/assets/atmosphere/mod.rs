@@ -3,6 +3,7 @@
 //! The keys are data ([`keys`]); a file that holds to them is built into the engine's types here and by [`layers`], whose range checks'
 //! messages find their line. An air that can be built and is hardly meant is told by [`plausible`].
 
+pub mod fog;
 pub mod keys;
 pub mod layers;
 pub mod optics;
@@ -13,6 +14,7 @@ use super::fields;
 use super::overlay::{DATA_MAX, Overlay, read_bytes};
 use super::reader::{ANY, Reader};
 use super::tree::{Data, Node};
+use crate::world::system::Fog;
 use engine::air::density::Lapse;
 use engine::air::model::{ColourMap, Gradient};
 use engine::air::spectral::SpectralMedium;
@@ -28,6 +30,8 @@ pub struct AirSpec {
     pub column: Option<Column>,
     /// What one sees, if anything.
     pub look: Option<Air>,
+    /// Banks of fog and nebulae.
+    pub fog: Vec<Fog>,
 }
 
 /// What a body lends to its air.
@@ -72,7 +76,8 @@ pub fn read_air(r: &Reader<'_>, datum: Datum, setting: &Setting<'_>) -> AirSpec 
     if let Some(look) = look.as_ref().filter(|_| r.errors() == before) {
         plausible::suspicions(r.node, look, column.as_ref(), datum.gravity_m_s2).into_iter().for_each(|s| r.fault(s));
     }
-    AirSpec { column, look }
+    let fog = fog::read(r, datum);
+    AirSpec { column, look, fog }
 }
 
 /// Turns range errors into faults; `table` is where their fields are, with a point behind it.
