@@ -63,6 +63,7 @@
 
 pub mod atmosphere;
 pub mod body;
+pub mod draft;
 pub mod fault;
 pub mod fields;
 pub mod overlay;
@@ -75,6 +76,7 @@ pub mod ship;
 pub mod start;
 pub mod system;
 pub mod tree;
+pub mod write;
 
 pub use fault::{AssetErrors, Fault};
 pub use reload::Reloader;
@@ -178,17 +180,17 @@ impl Assets {
         system::bodies(&self.overlay)
     }
 
-    /// One body checked: its own files, and the systems that list it; these are told.
-    pub fn check_body(&self, key: &str) -> Result<Vec<String>, AssetErrors> {
+    /// One body checked: its own files, and the systems that list it. Those, and what is hardly meant.
+    pub fn check_body(&self, key: &str) -> Result<(Vec<String>, Vec<String>), AssetErrors> {
         let systems: Vec<String> = self.systems().into_iter().filter(|s| system::lists(&self.overlay, s, key)).collect();
-        let mut errors = AssetErrors::default();
+        let (mut errors, mut warnings) = (AssetErrors::default(), Vec::new());
         if systems.is_empty() {
-            errors.keep(system::load_body(&self.overlay, key));
+            warnings.extend(errors.keep(system::load_body(&self.overlay, key)).into_iter().flatten());
         }
         for system in &systems {
-            errors.keep(self.system(system, &|_, _| ()));
+            warnings.extend(errors.keep(self.system(system, &|_, _| ())).into_iter().flat_map(|s| s.warnings.clone()));
         }
-        errors.or(systems)
+        errors.or((systems, warnings))
     }
 
     /// The ships there are.
@@ -196,13 +198,19 @@ impl Assets {
         self.overlay.names("ships", Some(".toml")).into_iter().collect()
     }
 
-    /// Everything, checked: what `check-assets` does.
-    pub fn check(&self) -> Result<(), AssetErrors> {
-        let mut errors = AssetErrors::default();
+    /// Everything, checked: what `check-assets` does. What is hardly meant comes back.
+    pub fn check(&self) -> Result<Vec<String>, AssetErrors> {
+        let (mut errors, mut warnings) = (AssetErrors::default(), Vec::new());
         let mut systems = std::collections::BTreeMap::new();
         for key in self.systems() {
             let system = errors.keep(self.system(&key, &|_, _| ()));
+            warnings.extend(system.iter().flat_map(|s| s.warnings.iter().cloned()));
             systems.insert(key, system);
+        }
+        for body in self.bodies() {
+            if !systems.keys().any(|s| system::lists(&self.overlay, s, &body)) {
+                warnings.extend(errors.keep(system::load_body(&self.overlay, &body)).into_iter().flatten());
+            }
         }
         for key in self.ships() {
             errors.keep(self.ship(&key));
@@ -221,9 +229,9 @@ impl Assets {
                 errors.keep(self.world(&key, &start, system, ship));
             }
         }
-        errors.or(())
+        errors.or(warnings)
     }
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
