@@ -162,7 +162,7 @@ impl Painter for ViewTable {
         for tables in self.tables.values_mut().filter(|t| !t.baked) {
             tables.baked = true;
             let air = Uniform::new(&gpu.device, "view bake: Air", wgpu::BufferUsages::empty());
-            air.write(&gpu.queue, &AirUniform::new(&tables.medium));
+            air.write(&gpu.queue, &AirUniform::new(&tables.medium, &crate::air::Classes::of(&tables.medium)));
             let s = &tables.settings;
             let sizes = [[s.depth_angle_size, s.depth_height_size, 1], [s.view_size, s.sun_size, s.height_size]];
             for (i, output) in [&tables.depth.view, &tables.scatter].into_iter().enumerate() {
