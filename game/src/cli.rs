@@ -5,9 +5,11 @@
 
 mod bench;
 mod eclipses;
+mod sky;
 
 pub use bench::{BenchEphemerisArgs, BenchKeplerArgs, BenchOrbitArgs, BenchShipsArgs};
 pub use eclipses::ProbeEclipsesArgs;
+pub use sky::ProbeSkyArgs;
 
 use clap::{Args, Parser, Subcommand};
 use engine::time::SimTime;
@@ -239,6 +241,10 @@ pub enum Probe {
     #[command(after_help = "Example:\n  syzygy probe eclipses --on earth --by moon --from 2461000 --to 2461500 --at 43.37,-8.40\n  \
         syzygy probe eclipses --on moon --by earth --from 2461000 --to 2462000")]
     Eclipses(ProbeEclipsesArgs),
+    /// Spectral radiance along the rays of a CSV file: the same rows with L, W m⁻² sr⁻¹ nm⁻¹ (no ground, no sun's disc)
+    #[command(after_help = "Example:\n  syzygy probe sky --planet tests/reference/planets/earth.toml \
+        --rays tests/reference/sky_radiance_sample.csv --model reference --out sky.csv")]
+    Sky(Box<ProbeSkyArgs>),
 }
 
 /// What can be measured.

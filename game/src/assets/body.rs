@@ -1,8 +1,7 @@
 //! A body's file, `body.toml`: from keys to a checked [`BodySpec`]. The schema is described at the head of [`super`].
 //!
-//! Not here: air ([`super::air`]), ground ([`super::relief`]), what needs other bodies ([`super::system`]).
+//! Not here: air ([`super::atmosphere`], a file of its own), ground ([`super::relief`]), what needs other bodies ([`super::system`]).
 
-use super::air::{AirSpec, read_air};
 use super::fault::At;
 use super::reader::{ANY, POSITIVE, Reader};
 use super::relief::read_relief;
@@ -51,8 +50,6 @@ pub struct BodySpec {
     pub family_gm_m3_s2: Option<f64>,
     /// Where it is.
     pub path: Path,
-    /// Its air.
-    pub air: Option<AirSpec>,
     /// Its ground and its greatest exaggeration.
     pub relief: Option<(ReliefSpec, f64)>,
     /// The file.
@@ -81,7 +78,6 @@ pub fn read_body(key: &str, r: Reader<'_>) -> BodySpec {
     let shape = r.maybe_table("shape").map_or(Shape::sphere(radius_m), |t| read_shape(t, radius_m));
     let gravity = r.maybe_table("gravity").map(|t| read_gravity(t, &spin, gm_m3_s2));
     let path = r.table("orbit").map_or_else(nowhere, read_path);
-    let air = r.maybe_table("air").map(|t| read_air(t, gm_m3_s2, radius_m));
     let relief = r.maybe_table("relief").map(read_relief);
     if parent.is_some() && star.is_some() {
         r.wrong("star", "`star`: expected only in the body without a `parent`");
@@ -99,7 +95,6 @@ pub fn read_body(key: &str, r: Reader<'_>) -> BodySpec {
         spin,
         shape,
         path,
-        air,
         relief,
         at: r.node.at.clone(),
     };

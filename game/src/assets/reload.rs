@@ -22,14 +22,14 @@ pub struct Reloader {
 }
 
 impl Reloader {
-    /// Watches `systems/<key>` in the assets and in the mods; the error says why that is not possible here (the game goes on without).
+    /// Watches the system's folder and the bodies in the assets and in the mods; the error says why that is not possible here (the game goes on without).
     pub fn watch(assets: &Assets, key: &str) -> Result<Self, String> {
         let (tell, changes) = channel();
         let mut watcher = new_debouncer(QUIET, None, tell).map_err(|e| e.to_string())?;
         for root in assets.overlay.roots() {
-            let system = root.join("systems").join(key);
             // A mod that does not have the folder yet may get it: then all of the mod is watched.
-            let folders = if system.is_dir() { vec![system, root.join("maps")] } else { vec![root.clone()] };
+            let bodies = root.join("bodies");
+            let folders = if bodies.is_dir() { vec![bodies, root.join("systems"), root.join("maps")] } else { vec![root.clone()] };
             for folder in folders.iter().filter(|f| f.is_dir()) {
                 watcher.watch(folder, RecursiveMode::Recursive).map_err(|e| format!("{}: {e}", folder.display()))?;
             }

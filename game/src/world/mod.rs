@@ -17,7 +17,7 @@ mod tests;
 
 use crate::command::{Action, Axes, Commands, Guidance, Hold, Target, WARP_ONE, WARP_QUARTERS};
 use engine::orbit::path::model::LEAVE;
-use engine::orbit::path::{End, Event, Knot, Path};
+use engine::orbit::path::{End, Event, Knot, Path, Setting};
 use engine::orbit::{BodyId, State};
 use engine::space::{Position, Rotation, Vector, Velocity};
 use engine::time::SimTime;
@@ -296,7 +296,8 @@ impl World {
 
     /// Begins a sampled path.
     fn start_path(&mut self, knot: Knot, attitude: CoastAttitude, since: SimTime) {
-        let path = Path::new(&self.system.gravity, &self.system.ephemeris, knot);
+        let setting = Setting { light_m3_s2: self.ship.light_m3_s2(&self.system), ..Setting::default() };
+        let path = Path::with(&self.system.gravity, &self.system.ephemeris, knot, setting);
         self.ship.motion = Motion::Coast(Coast::new(path, attitude, since));
     }
 

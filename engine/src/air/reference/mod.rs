@@ -24,7 +24,7 @@ use first::{STRATA, Starts};
 use glam::DVec3;
 use random::{Draw, Random, Sequence};
 use rayon::prelude::*;
-use space::{Light, Space, exp3};
+use space::{Light, Space, exp3, ground_under};
 use walk::Walk;
 
 pub use single::{optical_depth, transmittance_to_top};
@@ -49,6 +49,12 @@ pub struct Ray {
     pub occluders: Vec<Sphere>,
 }
 
+impl Ray {
+    fn light(&self) -> Light<'_> {
+        Light { sun: self.sun, sun_rad: self.sun_rad.max(1e-9), occluders: &self.occluders }
+    }
+}
+
 /// How good the answer must be.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
@@ -56,7 +62,7 @@ pub struct Options {
     pub rel_error: f64,
     /// Standard error that is good enough whatever the radiance is, sr⁻¹.
     pub abs_error: f64,
-    /// Walks after which a ray is left as it is.
+    /// Walks after which a ray is left as it is; 0 leaves further orders out.
     pub max_walks: u64,
     /// Seed of all draws.
     pub seed: u64,
@@ -86,20 +92,40 @@ pub struct Estimate {
 
 /// Radiance along every ray through a medium. Ray `i` draws from its own stream, so that the answer depends on the list and the seed alone.
 pub fn radiance(medium: &Medium, rays: &[Ray], options: &Options) -> Vec<Estimate> {
-    rays.par_iter().enumerate().map(|(i, ray)| one(medium, ray, options, i as u64)).collect()
+    radiance_noting(medium, rays, options, &|| ())
 }
 
-fn one(medium: &Medium, ray: &Ray, options: &Options, index: u64) -> Estimate {
+/// The same; `done` is called as each ray is finished, on whatever thread.
+pub fn radiance_noting(medium: &Medium, rays: &[Ray], options: &Options, done: &(dyn Fn() + Sync)) -> Vec<Estimate> {
+    // All eyes above the datum share one space.
+    let shared = rays.iter().find(|r| ground_under(medium, r.from_m) >= medium.bottom_radius_m).map(|r| Space::new(medium, r.from_m));
+    let answer = |(i, ray): (usize, &Ray)| {
+        let own;
+        let space = match &shared {
+            Some(space) if ground_under(medium, ray.from_m) >= medium.bottom_radius_m => space,
+            _ => {
+                own = Space::new(medium, ray.from_m);
+                &own
+            }
+        };
+        let estimate = one(medium, space, ray, options, i as u64);
+        done();
+        estimate
+    };
+    rays.par_iter().enumerate().map(answer).collect()
+}
+
+fn one(medium: &Medium, space: &Space, ray: &Ray, options: &Options, index: u64) -> Estimate {
     let nothing = Estimate { total: DVec3::ZERO, single: DVec3::ZERO, std_error: DVec3::ZERO, transmittance: DVec3::ONE };
     let Some(span) = span(medium, ray.from_m, ray.direction) else { return nothing };
-    let space = Space::new(medium, ray.from_m);
-    let light = Light { sun: ray.sun, sun_rad: ray.sun_rad.max(1e-9), occluders: &ray.occluders };
+    let light = ray.light();
     let way = (ray.from_m, ray.direction);
-    let single = single::single_scattering(medium, &space, &light, way, span, options.single_error);
+    let single = single::single_scattering(medium, space, &light, way, span, options.single_error);
     let transmittance = exp3(-optical_depth(medium, ray.from_m, ray.direction, (span.near_m, span.far_m), 1e-9));
-    let found = Starts::new(medium, &space, &light, ray.from_m, ray.direction, span)
-        .map(|starts| further(&space, &light, ray, starts, single, options, index));
-    let (more, std_error) = found.unwrap_or_default();
+    let (more, std_error) = match Starts::new(medium, space, &light, ray.from_m, ray.direction, span) {
+        Some(starts) if options.max_walks > 0 => further(space, &light, ray, starts, single, options, index),
+        _ => (DVec3::ZERO, DVec3::ZERO),
+    };
     Estimate { total: single + more, single, std_error, transmittance }
 }
 

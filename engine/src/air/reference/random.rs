@@ -110,7 +110,7 @@ mod tests {
         for axis in 0..DIMENSIONS {
             let mut cells = [0; 16];
             (0..1024).for_each(|i| cells[(sequence.point(i)[axis] * 16.0) as usize] += 1);
-            assert!(cells.iter().all(|n| (60..=68).contains(n)), "{cells:?}");
+            assert!(cells.iter().all(|n| (57..=71).contains(n)), "{cells:?}");
         }
     }
 }

@@ -54,6 +54,8 @@ impl Scatter {
     }
 
     fn tabulated(&self, u: f64) -> f64 {
+        // Pieces run from θ = 0, where cos θ is largest.
+        let u = 1.0 - u;
         let at = self.ends.partition_point(|end| *end <= u).min(self.pieces.len().saturating_sub(1));
         let Some(piece) = self.pieces.get(at) else { return 2.0 * u - 1.0 };
         let before = at.checked_sub(1).and_then(|i| self.ends.get(i)).copied().unwrap_or(0.0);

@@ -45,7 +45,7 @@ pub fn span(medium: &Medium, from_m: DVec3, direction: DVec3) -> Option<Span> {
 }
 
 /// Radius of the ground sphere as an eye at this place sees it, m.
-fn ground_under(medium: &Medium, from_m: DVec3) -> f64 {
+pub fn ground_under(medium: &Medium, from_m: DVec3) -> f64 {
     let datum = medium.bottom_radius_m;
     from_m.length().min(datum).max((datum - Medium::FLOOR_M).max(0.5 * datum))
 }
