@@ -49,8 +49,10 @@ fn probe(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let asked = given[id.x];
-    let body = sky_probe_body(bodies.list[sky.ids.x], asked);
+    // Always 0, but not by the compiler's knowledge: Mesa 22's software driver dies of conditions that it knows to be uniform in a dispatch.
+    let first = min(id.x, sky.ids.w);
+    let body = sky_probe_body(bodies.list[first], asked);
     let star = vec4<f32>(frame.star.xyz + body.centre.xyz, frame.star.w);
-    let light = physical_light(body, airs.list[0], media, transmittance, multiple, linear, star, sky, sky_probe_view(asked));
+    let light = physical_light(body, airs.list[first], media, transmittance, multiple, linear, star, sky, sky_probe_view(asked));
     found[id.x] = ProbeLight(vec4<f32>(light.radiance, 0.0), vec4<f32>(light.transmittance, 1.0));
 }
