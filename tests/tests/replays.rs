@@ -1,7 +1,8 @@
 //! The recorded flights in `tests/replays/`: each replays bit for bit, also saved and loaded on the way, and ends as it should.
 //!
-//! After a change to the World that is meant to change flights: `cargo test -p tests --test replays -- --ignored` flies and
-//! records them again.
+//! After a change to the World that is meant to change flights: `cargo test -p tests --test replays -- --ignored record` flies and
+//! records them again. After one to asset files that changes none: `… -- --ignored restamp` proves that they fly as before, bit for
+//! bit, and has them name the assets of today.
 
 use game::cli::Places;
 use game::mode::replay::{Played, play};
@@ -106,5 +107,21 @@ fn record() {
         let path = path_of(flight.name);
         log.write(&path, &header).unwrap_or_else(|e| panic!("{e}"));
         println!("{}: {} ticks, {} bytes", flight.name, log.ticks, std::fs::metadata(&path).map_or(0, |m| m.len()));
+    }
+}
+
+#[test]
+#[ignore = "puts the hashes of the present assets into recorded flights that fly as before"]
+fn restamp() {
+    let stage = stage();
+    for flight in FLIGHTS {
+        let path = path_of(flight.name);
+        let mut log = Log::read(&path).unwrap_or_else(|e| panic!("{e}"));
+        let state = game::save::decode(&log.start).unwrap_or_else(|e| panic!("{e:?}"));
+        let world = stage.world(&state).unwrap_or_else(|e| panic!("{e}"));
+        log.system_hash.clone_from(&world.system.hash);
+        let played = play(&path, log.clone(), None, &mut |save| stage.world(save), &mut |_| {}).unwrap_or_else(|e| panic!("{e}"));
+        assert!(played.diverged.is_none(), "{} is another flight now: {}", flight.name, played.diverged.unwrap());
+        log.write(&path, &recorder::header(&world)).unwrap_or_else(|e| panic!("{e}"));
     }
 }

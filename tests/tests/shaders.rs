@@ -79,7 +79,8 @@ fn mirrored_structs_have_the_layout_of_their_twins() {
                 tent_fall,
                 phases,
                 jumps_low,
-                jumps_high
+                jumps_high,
+                orders
             }),
         ),
         ("lib/phase.wgsl", "Phases", fields!(rust::PhasesUniform { g, x, y, z })),

@@ -46,9 +46,21 @@ impl At {
     }
 }
 
+/// How bad it is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Severity {
+    /// It cannot be used.
+    #[default]
+    Error,
+    /// It can be used, and is hardly what was meant.
+    Warning,
+}
+
 /// One fault.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fault {
+    /// How bad it is.
+    pub severity: Severity,
     /// The file, also where it could not be read.
     pub path: PathBuf,
     /// The place in it, where there is one.
@@ -62,12 +74,22 @@ pub struct Fault {
 impl Fault {
     /// A fault at a place.
     pub fn at(at: &At, message: impl Into<String>) -> Self {
-        Self { path: at.source.path.clone(), at: Some(at.clone()), message: message.into(), help: None }
+        Self { severity: Severity::Error, path: at.source.path.clone(), at: Some(at.clone()), message: message.into(), help: None }
+    }
+
+    /// What is hardly meant, at a place.
+    pub fn warning(at: &At, message: impl Into<String>) -> Self {
+        Self { severity: Severity::Warning, ..Self::at(at, message) }
     }
 
     /// A fault of a file that could not be read.
     pub fn file(path: &Path, message: impl Into<String>) -> Self {
-        Self { path: path.to_owned(), at: None, message: message.into(), help: None }
+        Self { severity: Severity::Error, path: path.to_owned(), at: None, message: message.into(), help: None }
+    }
+
+    /// It cannot be used.
+    pub fn is_error(&self) -> bool {
+        self.severity == Severity::Error
     }
 
     /// Adds what to do.
@@ -86,7 +108,8 @@ impl Fault {
 impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let place = self.at.as_ref().map(|at| at.line()).map_or_else(String::new, |(line, column, _)| format!(":{line}:{column}"));
-        write!(f, "{}{place}: {}", self.path.display(), self.message)
+        let severity = if self.is_error() { "" } else { "warning: " };
+        write!(f, "{}{place}: {severity}{}", self.path.display(), self.message)
     }
 }
 
@@ -135,9 +158,9 @@ impl SourceCode for Source {
     }
 }
 
-/// Every fault that was found.
+/// Everything that was found, of which at least one thing is an error.
 #[derive(Clone, Debug, Default, PartialEq, Eq, thiserror::Error, Diagnostic)]
-#[error("{} in the assets", if faults.len() == 1 { "a fault".to_owned() } else { format!("{} faults", faults.len()) })]
+#[error("{} in the assets", counted(faults))]
 pub struct AssetErrors {
     /// In the order in which they were found.
     #[related]
@@ -152,7 +175,7 @@ impl AssetErrors {
 
     /// `value` when nothing is wrong.
     pub fn or<T>(self, value: T) -> Result<T, Self> {
-        if self.faults.is_empty() { Ok(value) } else { Err(self) }
+        if self.faults.iter().any(Fault::is_error) { Err(self) } else { Ok(value) }
     }
 
     /// Takes over the faults of a failed step and goes on without its value.
@@ -170,6 +193,17 @@ impl AssetErrors {
     pub fn text(&self) -> String {
         let all: Vec<String> = self.faults.iter().map(Fault::text).collect();
         format!("{}\n\n{self}", all.join("\n\n"))
+    }
+}
+
+/// How many of which kind, in words.
+pub fn counted(faults: &[Fault]) -> String {
+    let errors = faults.iter().filter(|f| f.is_error()).count();
+    let words = |n: usize, one: &str, many: &str| if n == 1 { one.to_owned() } else { format!("{n} {many}") };
+    match (errors, faults.len() - errors) {
+        (errors, 0) => words(errors, "a fault", "faults"),
+        (0, warnings) => words(warnings, "a warning", "warnings"),
+        (errors, warnings) => format!("{} and {}", words(errors, "a fault", "faults"), words(warnings, "a warning", "warnings")),
     }
 }
 

@@ -2,16 +2,28 @@
 //!
 //! # Folders
 //! ```text
-//! assets/systems/<system>/system.toml         name, description, masses without a folder
-//! assets/systems/<system>/<body>/body.toml    one folder a body; its name is the body's key
-//! assets/maps/…                               maps that bodies name (also looked for beside the body's file)
-//! assets/ships/<ship>.toml                    ships
-//! assets/starts/<start>.toml                  where and when a flight begins
+//! assets/systems/<system>/system.toml    name, description, which bodies, masses that are no body
+//! assets/bodies/<body>/body.toml         one folder a body; its name is the body's key
+//! assets/bodies/<body>/atmosphere.toml   its air; a body without this file has none
+//! assets/maps/…                          maps that bodies name (also looked for beside the body's file)
+//! assets/ships/<ship>.toml               ships
+//! assets/starts/<start>.toml             where and when a flight begins
 //! ```
 //! # Mods
-//! A mod is a folder with the same layout, laid over the assets (`--mods DIR`, the last on top). A file at the same path replaces, a
-//! new one adds (a folder `systems/sol/vulcan/` with a `body.toml` is a new planet), and `body.patch.toml` changes only the keys
-//! that it holds: tables merge, values and lists are replaced. `syzygy check-assets DIR` tells everything that is wrong at once.
+//! A mod is a folder with the same layout, laid over the assets. The order, from the bottom: the assets; the folders in `mods/` of the data
+//! folder, by name; the folders of `--mods DIR`, as named. What lies higher wins:
+//! - *add*: a file that is not there yet. A new planet is a folder `bodies/vulcan/` with a `body.toml`, and a system that lists it;
+//! - *replace*: a file at the same path;
+//! - *modify*: `body.patch.toml`, `atmosphere.patch.toml` or `system.patch.toml` changes only the keys that it holds. Tables merge key by
+//!   key (one whose `kind` changes is replaced), values and lists are replaced. A *table* laid over a *list* changes items of the list:
+//!   `[layers.dust]` those keys of the layer named `dust`, `layers.remove = ["ozone"]` takes out, `[[layers.add]]` appends; likewise
+//!   `bodies.add = ["vulcan"]` in a system.
+//!
+//! `syzygy check-assets DIR` tells everything that is wrong at once, in the words in which the game tells it.
+//!
+//! # What a flight depends on
+//! A replay refuses other assets than its own: it compares [`System::hash`], which is made of the *values* that the World reads. Comments,
+//! the order of keys, names, colours, and all of an atmosphere but `[physics]` are no part of it.
 //!
 //! # `body.toml`
 //! Every key ends in its unit. Angles in °, Julian dates in TDB, axes ICRF. There are no silent defaults: a key left out is
@@ -20,7 +32,7 @@
 //! | table | keys |
 //! |---|---|
 //! | (top) | `name`, `parent` (key of the body it orbits; only the star has none), `gm_km3_s2`, `radius_km` (datum sphere: sea level), `albedo = [r, g, b]` (linear sRGB, 0 … 1) |
-//! | `[star]` | for the star only: `illuminance_at_1_au_lx` (Sun: 1.28e5), `colour = [r, g, b]` (linear sRGB, luminance 1) |
+//! | `[star]` | for the star only: `illuminance_at_1_au_lx` (Sun: 1.28e5), *optional* its spectrum: `temperature_k` (a black body's), or `wavelengths_nm` (rising) and `irradiance` (any scale); the Sun's where neither is given. *Optional* `colour = [r, g, b]` (linear sRGB, luminance 1), that of the spectrum against D65 where it is left out |
 //! | `[rotation]` | *optional* `model`: `"earth"` (precession, nutation, observed UT1; takes no other key) or `"iau"` (the same as none). IAU form: `pole_ra_deg`, `pole_ra_deg_per_century`, `pole_dec_deg`, `pole_dec_deg_per_century`, `meridian_deg`, `meridian_deg_per_day`; *optional* `meridian_deg_per_century2` and lists of `[amplitude_deg, phase_deg, rate_deg_per_century]`: `pole_ra_terms` (sines), `pole_dec_terms` (cosines), `meridian_terms` (sines) |
 //! | `[shape]` | *optional*, for eclipses; all keys *optional*: `equatorial_radius_km` (else `radius_km`), `flattening` (0 … 0.5), `limb_radius_km = [outer, inner]` (of the limb at outer and inner contacts), `shadow_enlargement` (1 … 1.1: by air and oblateness, for eclipses of its moons) |
 //! | `[gravity]` | *optional*, what makes it more than a point: `reference_radius_km`, `j2`, `j3`, `j4` (unnormalised); *optional* `c22`, `tide_k2` and `tide_lag_s` (the bulge that others raise on it), `gm_with_moons_km3_s2` (with moons that have no folder) |
@@ -28,27 +40,37 @@
 //! | … `"barycentric"` | state from the system's barycentre: `position_km`, `velocity_km_s`, `with_moons` (true: of the body with its moons) |
 //! | … `"from_parent"` | the same from the parent's centre: `position_km`, `velocity_km_s` |
 //! | … `"mean"` | precessing ellipse: `semi_major_axis_km`, `eccentricity`, `inclination_deg`, `node_deg`, `node_deg_per_year`, `argument_deg`, `argument_deg_per_year`, `mean_anomaly_deg`, `mean_longitude_deg_per_day`, and the pole of the plane that the angles refer to: `plane_pole_ra_deg`, `plane_pole_dec_deg` |
-//! | `[air.column]` | *optional*, what drags: `kind = "us76"` (Earth) or `"hydrostatic"`; `drag_top_m`; hydrostatic also `temperature_k`, `pressure_pa`, `molar_mass_kg_mol`, `heat_capacity_ratio`, *optional* `lapse = [{ to_altitude_m, k_per_m }]`. Gravity is the body's own |
-//! | `[air.medium]` | what one sees: `top_altitude_m`, `ground_albedo`, any number of `[[air.medium.layers]]` with `scattering_per_m`, `absorption_per_m` (at density 1), `profile` (`{ kind = "exponential", scale_height_m }` `{ kind = "tent", bottom_m, peak_m, top_m }`, `{ kind = "constant", bottom_m, top_m }` or `{ kind = "table", altitude_m = [..], density = [..] }`), `phase` (`{ kind = "rayleigh" }`, `{ kind = "henyey_greenstein", g }`, `{ kind = "cornette_shanks", g }`, `{ kind = "elek_rayleigh" }`, `{ kind = "isotropic" }` or `{ kind = "table", angle_deg = [..], value = [..] }`) |
 //! | `[relief]` | *optional* (giants and stars have none): `relief_max` (exaggeration from afar, 1 = never), `ground` (`"rock"`, `"regolith"`, `"living"`, `"ice"`), `water`; *optional* files `map`, `coast`, `colour`; *optional* tables `[relief.noise]`, `[relief.craters]`, `[relief.provinces]`: see [`engine::terrain::spec`] |
 //!
 //! An orbit tells where a body starts: from the star's epoch on all bodies move each other (see [`engine::orbit::ephemeris`]).
 //!
+//! # `atmosphere.toml`
+//! What one sees is apart from what drags: a body may have either without the other.
+//!
+//! | table | keys |
+//! |---|---|
+//! | (top) | `top_altitude_m`, `ground_albedo`, any number of `[[layers]]`; *optional* `spectrum`: `"rgb"` (each channel by one wavelength, the default) or `"spectral"` (six bands); *optional* `wavelengths_nm`: where numbers in threes hold, 680, 550, 440 by default |
+//! | `[[layers]]` | *optional* `name` (for patches); `scattering_per_m` and `absorption_per_m` (at density 1), or in their place `gas`, `aerosol`, `absorber` or `table`: see [`engine::air::optics`]; `profile` (`{ kind = "exponential", scale_height_m }`, `"tent"`, `"constant"`, `"table"`), `phase` (`{ kind = "rayleigh" }`, `{ kind = "cornette_shanks", g }` …) |
+//! | `[physics]` | *optional*, what drags: `kind = "us76"` (Earth) or `"hydrostatic"`; `drag_top_m`; hydrostatic also `temperature_k`, `pressure_pa`, `molar_mass_kg_mol`, `heat_capacity_ratio`, *optional* `lapse = [{ to_altitude_m, k_per_m }]`. Gravity is the body's own |
+//!
 //! # `system.toml`
-//! `name`, *optional* `description`, and *optional* `[[masses]]`: what attracts and is no body one can go to (asteroids), each with
+//! `name`, `bodies` (keys of folders in `bodies/`, in any order), *optional* `description`, and *optional* `[[masses]]`: what attracts and is no body one can go to (asteroids), each with
 //! `name`, `gm_km3_s2`, `position_km`, `velocity_km_s` from the barycentre at the epoch of the star.
 //!
 //! # Here
 //! [`system`], [`ship`] and [`start`] load; [`reader`] takes keys out of a [`tree`] and gathers [`fault`]s; [`overlay`] finds and reads
 //! files; [`reload`] watches them. Not here: what a World does with it all.
 
-pub mod air;
+pub mod atmosphere;
 pub mod body;
 pub mod fault;
+pub mod fields;
 pub mod overlay;
+pub mod planet;
 pub mod reader;
 pub mod relief;
 pub mod reload;
+pub mod schema;
 pub mod ship;
 pub mod start;
 pub mod system;
@@ -61,6 +83,8 @@ use crate::world::World;
 use crate::world::ship::spec::ShipSpec;
 use crate::world::start::StartSpec;
 use crate::world::system::System;
+use atmosphere::AirSpec;
+use engine::light::spectrum::Starlight;
 use overlay::Overlay;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -81,6 +105,16 @@ impl Assets {
     /// A system; `progress` hears how much is done, 0 … 1, and of what.
     pub fn system(&self, key: &str, progress: &(dyn Fn(f32, &str) + Sync)) -> Result<Arc<System>, AssetErrors> {
         system::load_system(&self.overlay, key, progress)
+    }
+
+    /// The air of a body under a star, without the system around it; the default where it has none.
+    pub fn air(&self, body: &str, star: &Starlight) -> Result<AirSpec, AssetErrors> {
+        system::load_air(&self.overlay, body, star)
+    }
+
+    /// A system with its airs read anew, everything else as it is.
+    pub fn airs(&self, system: &System) -> Result<Arc<System>, AssetErrors> {
+        system::reread_airs(&self.overlay, system)
     }
 
     /// A ship.
@@ -137,6 +171,24 @@ impl Assets {
     pub fn systems(&self) -> Vec<String> {
         let exists = |name: &String| self.overlay.find(format!("systems/{name}/system.toml")).is_some();
         self.overlay.names("systems", None).into_iter().filter(exists).collect()
+    }
+
+    /// The bodies there are.
+    pub fn bodies(&self) -> Vec<String> {
+        system::bodies(&self.overlay)
+    }
+
+    /// One body checked: its own files, and the systems that list it; these are told.
+    pub fn check_body(&self, key: &str) -> Result<Vec<String>, AssetErrors> {
+        let systems: Vec<String> = self.systems().into_iter().filter(|s| system::lists(&self.overlay, s, key)).collect();
+        let mut errors = AssetErrors::default();
+        if systems.is_empty() {
+            errors.keep(system::load_body(&self.overlay, key));
+        }
+        for system in &systems {
+            errors.keep(self.system(system, &|_, _| ()));
+        }
+        errors.or(systems)
     }
 
     /// The ships there are.

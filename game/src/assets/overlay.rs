@@ -52,6 +52,13 @@ impl Overlay {
         files
     }
 
+    /// Patches that lie above no file: there is nothing there that they could change.
+    pub fn orphans(&self, relative: &str) -> Vec<PathBuf> {
+        let Some(stem) = relative.strip_suffix(".toml") else { return Vec::new() };
+        let base = self.roots.iter().position(|r| r.join(relative).is_file()).unwrap_or(self.roots.len());
+        self.roots[..base].iter().map(|r| r.join(format!("{stem}.patch.toml"))).filter(|p| p.is_file()).collect()
+    }
+
     /// Names in a folder over all roots, sorted: of folders, or of files with an ending (without it; patches left out).
     pub fn names(&self, relative: &str, ending: Option<&str>) -> BTreeSet<String> {
         let mut names = BTreeSet::new();

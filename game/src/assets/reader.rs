@@ -2,7 +2,7 @@
 //! stopping at the first. What was never asked for is unknown. After a fault a placeholder (NaN, an empty string) goes on, which
 //! nobody sees: a load with faults gives no result.
 
-use super::fault::{Fault, did_you_mean, nearest};
+use super::fault::{At, Fault, did_you_mean, nearest};
 use super::tree::{Data, Node};
 use std::cell::RefCell;
 use std::ops::RangeInclusive;
@@ -31,6 +31,21 @@ impl<'a> Reader<'a> {
         Self { node, name: String::new(), faults, asked: RefCell::default() }
     }
 
+    /// The same table, to be read once more.
+    pub fn again(&self) -> Self {
+        Self { node: self.node, name: self.name.clone(), faults: self.faults, asked: RefCell::default() }
+    }
+
+    /// Whether a key is there; it counts as asked for.
+    pub fn has(&self, key: &'static str) -> bool {
+        self.find(key).is_some()
+    }
+
+    /// Errors written down so far, of this file and others.
+    pub fn errors(&self) -> usize {
+        count_errors(self.faults)
+    }
+
     /// Writes a fault down.
     pub fn fault(&self, fault: Fault) {
         self.faults.borrow_mut().push(fault);
@@ -52,7 +67,8 @@ impl<'a> Reader<'a> {
         self.node.get(key).map(|e| &e.value)
     }
 
-    fn need(&self, key: &'static str, expected: &str) -> Option<&'a Node> {
+    /// A value that must be there.
+    pub fn needed(&self, key: &'static str, expected: &str) -> Option<&'a Node> {
         let found = self.find(key);
         if found.is_none() {
             let table = if self.name.is_empty() { "at the top of the file".to_owned() } else { format!("in [{}]", self.name) };
@@ -81,7 +97,7 @@ impl<'a> Reader<'a> {
 
     /// A number that must be there.
     pub fn number(&self, key: &'static str, range: RangeInclusive<f64>) -> f64 {
-        self.need(key, &words(&range)).map_or(f64::NAN, |n| self.checked(key, n, &range))
+        self.needed(key, &words(&range)).map_or(f64::NAN, |n| self.checked(key, n, &range))
     }
 
     /// A number that may be left out.
@@ -90,9 +106,14 @@ impl<'a> Reader<'a> {
     }
 
     /// A whole number that fits `u32`.
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
     pub fn whole(&self, key: &'static str) -> u32 {
-        let x = self.number(key, 0.0..=f64::from(u32::MAX));
+        self.whole_in(key, 0.0..=f64::from(u32::MAX))
+    }
+
+    /// A whole number of a range within `u32`.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    pub fn whole_in(&self, key: &'static str, range: RangeInclusive<f64>) -> u32 {
+        let x = self.number(key, range);
         if x.fract() != 0.0 && x.is_finite() {
             self.wrong(key, format!("`{}` = {x}: expected a whole number", self.full(key)));
         }
@@ -102,7 +123,7 @@ impl<'a> Reader<'a> {
     /// `N` numbers in a list.
     pub fn numbers<const N: usize>(&self, key: &'static str, range: RangeInclusive<f64>) -> [f64; N] {
         let expected = format!("a list of {N} numbers, each {}", words(&range));
-        self.need(key, &expected).map_or([f64::NAN; N], |n| self.list(key, n, &range, &expected))
+        self.needed(key, &expected).map_or([f64::NAN; N], |n| self.list(key, n, &range, &expected))
     }
 
     fn list<const N: usize>(&self, key: &str, node: &Node, range: &RangeInclusive<f64>, expected: &str) -> [f64; N] {
@@ -122,6 +143,21 @@ impl<'a> Reader<'a> {
         out
     }
 
+    /// Two numbers or more in a list.
+    pub fn series(&self, key: &'static str, range: RangeInclusive<f64>) -> Vec<f64> {
+        let expected = format!("a list of two or more numbers, each {}", words(&range));
+        match self.needed(key, &expected) {
+            Some(Node { data: Data::Array(list), .. }) if list.len() > 1 => {
+                list.iter().enumerate().map(|(i, item)| self.checked(&format!("{key}[{i}]"), item, &range)).collect()
+            }
+            Some(node) => {
+                self.mismatch(key, node, &expected);
+                Vec::new()
+            }
+            None => Vec::new(),
+        }
+    }
+
     /// A list of lists of `N` numbers; empty where the key is left out.
     pub fn rows<const N: usize>(&self, key: &'static str) -> Vec<[f64; N]> {
         let expected = format!("a list of lists of {N} numbers");
@@ -135,26 +171,30 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Any count of numbers in a list.
-    pub fn column(&self, key: &'static str) -> Vec<f64> {
-        let expected = "a list of numbers";
-        let Some(node) = self.need(key, expected) else { return Vec::new() };
-        let Data::Array(list) = &node.data else {
-            self.mismatch(key, node, expected);
-            return Vec::new();
-        };
-        list.iter().enumerate().map(|(i, item)| self.checked(&format!("{key}[{i}]"), item, &ANY)).collect()
-    }
-
     /// A string that must be there and not be empty.
     pub fn text(&self, key: &'static str) -> String {
-        let Some(node) = self.need(key, "a string") else { return String::new() };
+        let Some(node) = self.needed(key, "a string") else { return String::new() };
         self.string(key, node)
     }
 
     /// A string that may be left out.
     pub fn maybe_text(&self, key: &'static str) -> Option<String> {
         self.find(key).map(|node| self.string(key, node))
+    }
+
+    /// A list of strings, at least one, each with its place.
+    pub fn texts(&self, key: &'static str) -> Vec<(String, At)> {
+        let expected = "a list of strings, at least one";
+        match self.needed(key, expected) {
+            Some(Node { data: Data::Array(list), .. }) if !list.is_empty() => {
+                list.iter().enumerate().map(|(i, item)| (self.string(&format!("{key}[{i}]"), item), item.at.clone())).collect()
+            }
+            Some(node) => {
+                self.mismatch(key, node, expected);
+                Vec::new()
+            }
+            None => Vec::new(),
+        }
     }
 
     fn string(&self, key: &str, node: &Node) -> String {
@@ -175,7 +215,7 @@ impl<'a> Reader<'a> {
     pub fn choice(&self, key: &'static str, words: &[&'static str]) -> &'static str {
         let expected = format!("one of {}", words.iter().map(|w| format!("\"{w}\"")).collect::<Vec<_>>().join(", "));
         let fallback = words.first().copied().unwrap_or("");
-        let Some(node) = self.need(key, &expected) else { return fallback };
+        let Some(node) = self.needed(key, &expected) else { return fallback };
         let Data::Text(s) = &node.data else {
             self.mismatch(key, node, &expected);
             return fallback;
@@ -189,7 +229,7 @@ impl<'a> Reader<'a> {
 
     /// true or false, which must be there.
     pub fn flag(&self, key: &'static str) -> bool {
-        let Some(node) = self.need(key, "true or false") else { return false };
+        let Some(node) = self.needed(key, "true or false") else { return false };
         let Data::Bool(b) = node.data else {
             self.mismatch(key, node, "true or false");
             return false;
@@ -210,7 +250,7 @@ impl<'a> Reader<'a> {
     /// A table that must be there.
     pub fn table(&self, key: &'static str) -> Option<Reader<'a>> {
         let name = self.full(key);
-        self.need(key, &format!("a table [{name}]"))?;
+        self.needed(key, &format!("a table [{name}]"))?;
         self.maybe_table(key)
     }
 
@@ -253,6 +293,11 @@ impl<'a> Reader<'a> {
             self.fault(fault.help(help));
         }
     }
+}
+
+/// Errors among what was written down.
+pub fn count_errors(faults: &Faults) -> usize {
+    faults.borrow().iter().filter(|f| f.is_error()).count()
 }
 
 fn words(range: &RangeInclusive<f64>) -> String {

@@ -45,6 +45,7 @@ fn read(node: &Node, table: &DeTable<'_>, key: &str, faults: &Faults) -> Option<
     let hull = parts.part("hull");
     let gear = parts.part("gear");
     let limits = parts.part("limits");
+    let sunlight = r.maybe_table("sunlight").and_then(|_| parts.part("sunlight"));
     r.finish();
     Some(ShipSpec {
         key: written,
@@ -58,6 +59,7 @@ fn read(node: &Node, table: &DeTable<'_>, key: &str, faults: &Faults) -> Option<
         hull: hull?,
         gear: gear?,
         limits: limits?,
+        sunlight,
     })
 }
 

@@ -1,12 +1,14 @@
-//! A system from its folder: every body's file is read and checked, all faults are gathered, and only a system without any is built.
+//! A system from its file: that of every body that it lists is read and checked, all faults are gathered, and only a system without any is built.
 
+use super::atmosphere::{AirSpec, Datum, read_air};
 use super::body::{BodySpec, read_body};
-use super::fault::{AssetErrors, Fault, nearest};
+use super::fault::{AssetErrors, At, Fault, nearest};
 use super::overlay::{Overlay, read_text};
-use super::reader::{Faults, POSITIVE, Reader};
+use super::reader::{Faults, POSITIVE, Reader, count_errors};
 use super::relief::load_maps;
-use super::tree::{Node, parse};
-use crate::world::system::{Air, Body, System};
+use super::tree::{Data, Node, parse};
+use crate::world::system::{Body, System};
+use engine::light::spectrum::Starlight;
 use engine::orbit::BodyId;
 use engine::orbit::State;
 use engine::orbit::ephemeris::{Details, Ephemeris, EphemerisError, Mass, Orbit, Path as OrbitPath};
@@ -15,6 +17,7 @@ use engine::terrain::Relief;
 use engine::units::{KM, KM3_S2};
 use glam::DVec3;
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -27,15 +30,18 @@ pub fn load_system(overlay: &Overlay, key: &str, progress: &(dyn Fn(f32, &str) +
     let faults = Faults::default();
     let mut hash = blake3::Hasher::new();
     let system = read(overlay, key, &faults, &mut hash, progress);
-    let faults = faults.into_inner();
+    let found = AssetErrors { faults: faults.into_inner() };
     match system {
-        Some(system) if faults.is_empty() => Ok(Arc::new(system)),
-        _ => Err(AssetErrors { faults }),
+        Some(mut system) if !found.faults.iter().any(Fault::is_error) => {
+            system.warnings = found.faults.iter().map(Fault::text).collect();
+            Ok(Arc::new(system))
+        }
+        _ => Err(found),
     }
 }
 
-/// Reads a file with its patches into one tree; faults are written down.
-pub fn read_tree(overlay: &Overlay, relative: &str, what: &str, faults: &Faults, hash: &mut blake3::Hasher) -> Option<Node> {
+/// Reads a file with its patches into one tree; faults are written down. `what` is what is expected in it.
+pub fn read_tree(overlay: &Overlay, relative: &str, what: &str, faults: &Faults) -> Option<Node> {
     let files = overlay.with_patches(relative);
     if files.is_empty() {
         let message = format!("the file is missing: expected {what}");
@@ -50,10 +56,8 @@ pub fn read_tree(overlay: &Overlay, relative: &str, what: &str, faults: &Faults,
                 return None;
             }
         };
-        // Line ends are no difference: a checkout on Windows flies the same replays.
-        hash.update(source.text.replace("\r\n", "\n").as_bytes());
         match (parse(&source), &mut tree) {
-            (Ok(node), Some(tree)) => tree.patch(node),
+            (Ok(node), Some(tree)) => tree.patch(node, &mut faults.borrow_mut()),
             (Ok(node), none) => *none = Some(node),
             (Err(errors), _) => {
                 faults.borrow_mut().extend(errors);
@@ -65,44 +69,43 @@ pub fn read_tree(overlay: &Overlay, relative: &str, what: &str, faults: &Faults,
 }
 
 fn read(overlay: &Overlay, key: &str, faults: &Faults, hash: &mut blake3::Hasher, progress: &(dyn Fn(f32, &str) + Sync)) -> Option<System> {
-    let folder = format!("systems/{key}");
-    let fault = |f: Fault| faults.borrow_mut().push(f);
-    let top = read_tree(overlay, &format!("{folder}/system.toml"), "the system's name", faults, hash);
-    if top.is_none() && overlay.with_patches(&format!("{folder}/system.toml")).is_empty() {
+    let file = format!("systems/{key}/system.toml");
+    let top = read_tree(overlay, &file, "the system's name and its bodies", faults);
+    if top.is_none() && overlay.with_patches(&file).is_empty() {
         let known = overlay.names("systems", None);
         if let Some(last) = faults.borrow_mut().last_mut() {
             last.help = nearest(key, known.iter().map(String::as_str));
         }
         return None;
     }
-    let top = top.as_ref().map(|node| {
-        let r = Reader::new(node, faults);
-        let name = r.text("name");
-        r.maybe_text("description");
-        let masses: Vec<(String, Mass)> = r.tables("masses").into_iter().map(read_mass).collect();
-        r.finish();
-        (name, masses)
-    });
-    let mut specs = Vec::new();
-    let keys = overlay.names(&folder, None);
-    if keys.is_empty() || keys.len() > BODIES_MAX {
-        let message = format!("expected 1 to {BODIES_MAX} folders with a body.toml, found {}", keys.len());
-        fault(Fault::file(&overlay.expected(&folder), message));
-    }
+    let top = read_top(Reader::new(&top?, faults), hash);
+    tell_orphans(overlay, faults);
+    let mut specs: Vec<BodySpec> = Vec::new();
     let mut whole = true;
-    for body in &keys {
+    let mut drags = BTreeMap::new();
+    for (body, at) in &top.bodies {
         hash.update(body.as_bytes());
-        match read_tree(overlay, &format!("{folder}/{body}/body.toml"), "a file for the body of this folder", faults, hash) {
-            Some(node) => specs.push(read_body(body, Reader::new(&node, faults))),
-            None => whole = false,
-        }
+        let Some(tree) = read_listed(overlay, body, at, faults) else {
+            whole = false;
+            continue;
+        };
+        digest(&tree, &["name", "albedo"], hash);
+        let spec = read_body(body, Reader::new(&tree, faults));
+        specs.push(spec);
     }
-    let order = order(&specs, &keys.iter().map(String::as_str).collect::<Vec<_>>(), faults)?;
+    let starlight = specs.iter().find_map(|s| s.starlight.clone()).unwrap_or_default();
+    let with_air = |spec: BodySpec| {
+        let (air, drag) = read_atmosphere(overlay, &spec.key, Datum::new(spec.gm_m3_s2, spec.radius_m), &starlight, faults);
+        drags.insert(spec.key.clone(), drag);
+        (spec, air)
+    };
+    let specs: Vec<(BodySpec, AirSpec)> = specs.into_iter().map(with_air).collect();
+    let order = order(&specs, &top.bodies.keys().map(String::as_str).collect::<Vec<_>>(), faults)?;
     if !whole {
         return None;
     }
-    let specs: Vec<BodySpec> = order.into_iter().map(|i| specs[i].clone()).collect();
-    if !faults.borrow().is_empty() {
+    let (specs, airs): (Vec<BodySpec>, Vec<AirSpec>) = order.into_iter().map(|i| specs[i].clone()).unzip();
+    if count_errors(faults) > 0 {
         return None;
     }
     // Maps are most of the work, and independent of each other.
@@ -110,7 +113,7 @@ fn read(overlay: &Overlay, key: &str, faults: &Faults, hash: &mut blake3::Hasher
     let grounds: Vec<Ground> = specs
         .par_iter()
         .map(|s| {
-            let ground = ground(s, overlay, &format!("{folder}/{}", s.key));
+            let ground = ground(s, overlay, &format!("bodies/{}", s.key));
             let count = done.fetch_add(1, Ordering::Relaxed) + 1;
             progress(count as f32 / specs.len() as f32, &s.name);
             ground
@@ -122,12 +125,172 @@ fn read(overlay: &Overlay, key: &str, faults: &Faults, hash: &mut blake3::Hasher
         faults.borrow_mut().extend(ground.faults);
         reliefs.push(ground.relief);
     }
-    if !faults.borrow().is_empty() {
+    if count_errors(faults) > 0 {
         return None;
     }
-    let hash = hash.finalize().to_hex().to_string();
-    let (name, masses) = top?;
-    build(key, name, specs, masses, reliefs, hash).map_err(|f| faults.borrow_mut().push(f)).ok()
+    let solid = hash.finalize().to_hex().to_string();
+    let hash = whole_hash(&solid, &drags);
+    let system = build(key, top, specs, airs, reliefs, hash).map_err(|f| faults.borrow_mut().push(f)).ok()?;
+    Some(System { solid_hash: solid, starlight, ..system })
+}
+
+/// The hash of what a flight depends on, from that of all but the air and those of the air that drags, by body.
+fn whole_hash(solid: &str, drags: &BTreeMap<String, String>) -> String {
+    let mut hash = blake3::Hasher::new();
+    hash.update(solid.as_bytes());
+    for (body, drag) in drags {
+        hash.update(body.as_bytes()).update(drag.as_bytes());
+    }
+    hash.finalize().to_hex().to_string()
+}
+
+/// A system with its airs read anew and all else as it is: a thousandth of the work of [`load_system`], for those who turn a sky's
+/// colours while they look at it.
+pub fn reread_airs(overlay: &Overlay, system: &System) -> Result<Arc<System>, AssetErrors> {
+    let faults = Faults::default();
+    tell_orphans(overlay, &faults);
+    let mut drags = BTreeMap::new();
+    let mut bodies = system.bodies.clone();
+    for body in &mut bodies {
+        let (air, drag) = read_atmosphere(overlay, &body.key, Datum::new(body.gm_m3_s2, body.radius_m), &system.starlight, &faults);
+        (body.air, body.look) = (air.column, air.look);
+        drags.insert(body.key.clone(), drag);
+    }
+    let hash = whole_hash(&system.solid_hash, &drags);
+    let found = AssetErrors { faults: faults.into_inner() };
+    let warnings = found.faults.iter().map(Fault::text).collect();
+    let new = System::new(system.key.clone(), system.name.clone(), bodies, system.ephemeris.clone(), hash);
+    found.or(Arc::new(System {
+        solid_hash: system.solid_hash.clone(),
+        starlight: system.starlight.clone(),
+        warnings,
+        eclipses: system.eclipses.clone(),
+        ..new
+    }))
+}
+
+/// What `system.toml` says.
+struct Top {
+    name: String,
+    /// Keys of the bodies, and where each is listed. Sorted: their order in the file makes no difference.
+    bodies: BTreeMap<String, At>,
+    masses: Vec<(String, Mass)>,
+}
+
+fn read_top(r: Reader<'_>, hash: &mut blake3::Hasher) -> Top {
+    let name = r.text("name");
+    r.maybe_text("description");
+    let mut bodies = BTreeMap::new();
+    for (key, at) in r.texts("bodies") {
+        if !key.chars().all(|c| c.is_alphanumeric() || c == '_' || c == '-') {
+            r.fault(Fault::at(&at, format!("`bodies`: \"{key}\": expected the name of a folder in `bodies`")));
+        } else if bodies.insert(key.clone(), at.clone()).is_some() {
+            r.fault(Fault::at(&at, format!("`bodies`: \"{key}\" is listed twice: expected each body once")));
+        }
+    }
+    if bodies.len() > BODIES_MAX {
+        r.wrong("bodies", format!("`bodies`: {} of them: expected 1 to {BODIES_MAX}", bodies.len()));
+    }
+    digest(r.node, &["name", "description", "bodies"], hash);
+    let masses: Vec<(String, Mass)> = r.tables("masses").into_iter().map(read_mass).collect();
+    r.finish();
+    Top { name, bodies, masses }
+}
+
+/// The tree of a body that a system lists; where there is no such body, that is told at the list.
+fn read_listed(overlay: &Overlay, body: &str, at: &At, faults: &Faults) -> Option<Node> {
+    let relative = format!("bodies/{body}/body.toml");
+    if overlay.find(&relative).is_none() {
+        let known = bodies(overlay);
+        let message = format!("`bodies`: there is no body \"{body}\": expected its file {}", overlay.expected(&relative).display());
+        faults.borrow_mut().push(Fault::at(at, message).help(nearest(body, known.iter().map(String::as_str))));
+        return None;
+    }
+    read_tree(overlay, &relative, "the body", faults)
+}
+
+/// The bodies that there are.
+pub fn bodies(overlay: &Overlay) -> Vec<String> {
+    let exists = |name: &String| overlay.find(format!("bodies/{name}/body.toml")).is_some();
+    overlay.names("bodies", None).into_iter().filter(exists).collect()
+}
+
+/// Whether a system lists a body; `false` too where its file cannot be read.
+pub fn lists(overlay: &Overlay, system: &str, body: &str) -> bool {
+    let tree = read_tree(overlay, &format!("systems/{system}/system.toml"), "", &Faults::default());
+    let Some(Data::Array(list)) = tree.as_ref().and_then(|t| t.get("bodies")).map(|e| &e.value.data) else { return false };
+    list.iter().any(|item| item.text() == Some(body))
+}
+
+/// A body's own files, checked without the bodies around it.
+pub fn load_body(overlay: &Overlay, key: &str) -> Result<(), AssetErrors> {
+    let faults = Faults::default();
+    tell_orphans(overlay, &faults);
+    if let Some(tree) = read_tree(overlay, &format!("bodies/{key}/body.toml"), "the body", &faults) {
+        let spec = read_body(key, Reader::new(&tree, &faults));
+        read_atmosphere(overlay, key, Datum::new(spec.gm_m3_s2, spec.radius_m), &Starlight::default(), &faults);
+        let ground = if count_errors(&faults) == 0 { ground(&spec, overlay, &format!("bodies/{key}")) } else { Ground::default() };
+        faults.borrow_mut().extend(ground.faults);
+    }
+    AssetErrors { faults: faults.into_inner() }.or(())
+}
+
+/// The air of a body alone.
+pub fn load_air(overlay: &Overlay, key: &str, star: &Starlight) -> Result<AirSpec, AssetErrors> {
+    let faults = Faults::default();
+    let mut air = AirSpec::default();
+    if let Some(tree) = read_tree(overlay, &format!("bodies/{key}/body.toml"), "the body", &faults) {
+        let spec = read_body(key, Reader::new(&tree, &faults));
+        air = read_atmosphere(overlay, key, Datum::new(spec.gm_m3_s2, spec.radius_m), star, &faults).0;
+    }
+    AssetErrors { faults: faults.into_inner() }.or(air)
+}
+
+/// Patches of what is not there, also in folders that no system lists.
+fn tell_orphans(overlay: &Overlay, faults: &Faults) {
+    let known = bodies(overlay);
+    for body in overlay.names("bodies", None) {
+        for file in ["body.toml", "atmosphere.toml"] {
+            let relative = format!("bodies/{body}/{file}");
+            let there = overlay.find(&relative);
+            for patch in overlay.orphans(&relative) {
+                let fault = match &there {
+                    Some(above) => Fault::file(&patch, format!("it changes nothing: {} lies above it and replaces all", above.display()))
+                        .help(Some(
+                            "expected a patch in the same mod or in a later one: mods lie in the order in which they are named".to_owned(),
+                        )),
+                    None => Fault::file(
+                        &patch,
+                        format!("there is no `{relative}` that it could change: expected one in the assets or in a mod"),
+                    )
+                    .help(nearest(&body, known.iter().map(String::as_str))),
+                };
+                faults.borrow_mut().push(fault);
+            }
+        }
+    }
+}
+
+/// The air of a body: a file of its own, without which there is none. The second value is the hash of what drags in it: the look is no
+/// part of a flight.
+fn read_atmosphere(overlay: &Overlay, body: &str, datum: Datum, star: &Starlight, faults: &Faults) -> (AirSpec, String) {
+    let relative = format!("bodies/{body}/atmosphere.toml");
+    if overlay.find(&relative).is_none() {
+        return Default::default();
+    }
+    let Some(tree) = read_tree(overlay, &relative, "the air", faults) else { return Default::default() };
+    let mut hash = blake3::Hasher::new();
+    if let Some(physics) = tree.get("physics") {
+        physics.value.digest(&mut hash);
+    }
+    (read_air(&Reader::new(&tree, faults), datum, star), hash.finalize().to_hex().to_string())
+}
+
+/// Feeds a file's values to the hash, but for what a flight does not depend on.
+fn digest(tree: &Node, seen_only: &[&str], hash: &mut blake3::Hasher) {
+    let Data::Table(entries) = &tree.data else { return };
+    let entries = entries.iter().filter(|e| !seen_only.contains(&e.key.as_str())).cloned().collect();
+    Node { at: tree.at.clone(), data: Data::Table(entries) }.digest(hash);
 }
 
 fn read_mass(r: Reader<'_>) -> (String, Mass) {
@@ -144,24 +307,24 @@ fn read_mass(r: Reader<'_>) -> (String, Mass) {
 
 /// The star first, then depth first: each body by its distance from its parent, its moons behind it. `None` where the tree
 /// of parents is broken, which is then written down.
-fn order(specs: &[BodySpec], folders: &[&str], faults: &Faults) -> Option<Vec<usize>> {
-    let before = faults.borrow().len();
-    let find = |key: &str| specs.iter().position(|s| s.key == key);
+fn order(specs: &[(BodySpec, AirSpec)], folders: &[&str], faults: &Faults) -> Option<Vec<usize>> {
+    let before = count_errors(faults);
+    let find = |key: &str| specs.iter().position(|s| s.0.key == key);
     let mut roots = Vec::new();
-    for (i, s) in specs.iter().enumerate() {
+    for (i, (s, _)) in specs.iter().enumerate() {
         let Some((parent, at)) = &s.parent else {
             roots.push(i);
             continue;
         };
         if find(parent).is_none() && !folders.contains(&parent.as_str()) {
-            let message = format!("`parent` = \"{parent}\": expected the folder of another body of this system");
+            let message = format!("`parent` = \"{parent}\": expected another body that this system lists");
             let others = folders.iter().copied().filter(|f| *f != s.key);
             faults.borrow_mut().push(Fault::at(at, message).help(nearest(parent, others)));
         }
         // A walk of more steps than there are bodies goes round.
         let mut at_body = Some(i);
         for _ in 0..=specs.len() {
-            at_body = at_body.and_then(|b| specs[b].parent.as_ref()).and_then(|(p, _)| find(p));
+            at_body = at_body.and_then(|b| specs[b].0.parent.as_ref()).and_then(|(p, _)| find(p));
         }
         if at_body.is_some() {
             let message = format!("`parent` = \"{parent}\": the parents of `{}` go round in a circle: expected a way to the star", s.key);
@@ -169,25 +332,25 @@ fn order(specs: &[BodySpec], folders: &[&str], faults: &Faults) -> Option<Vec<us
         }
     }
     // Who shines is the star; the others are at fault.
-    roots.sort_by_key(|i| specs[*i].intensity_cd.max_element() <= 0.0);
+    roots.sort_by_key(|i| specs[*i].0.intensity_cd.max_element() <= 0.0);
     match roots.as_slice() {
         [_] => {}
         [] if specs.is_empty() => {}
-        [] => faults.borrow_mut().push(Fault::at(&specs[0].at, "every body has a `parent`: expected one body without, the star")),
+        [] => faults.borrow_mut().push(Fault::at(&specs[0].0.at, "every body has a `parent`: expected one body without, the star")),
         [first, rest @ ..] => {
             for i in rest {
-                let message = format!("no `parent`, as `{}` has none: expected only one body without, the star", specs[*first].key);
-                faults.borrow_mut().push(Fault::at(&specs[*i].at, message));
+                let message = format!("no `parent`, as `{}` has none: expected only one body without, the star", specs[*first].0.key);
+                faults.borrow_mut().push(Fault::at(&specs[*i].0.at, message));
             }
         }
     }
     if let [root] = roots.as_slice()
-        && specs[*root].intensity_cd.max_element() <= 0.0
+        && specs[*root].0.intensity_cd.max_element() <= 0.0
     {
         let message = "missing table [star]: expected it in the body without a `parent`";
-        faults.borrow_mut().push(Fault::at(&specs[*root].at, message));
+        faults.borrow_mut().push(Fault::at(&specs[*root].0.at, message));
     }
-    if faults.borrow().len() > before {
+    if count_errors(faults) > before {
         return None;
     }
     let mut order = Vec::new();
@@ -195,8 +358,8 @@ fn order(specs: &[BodySpec], folders: &[&str], faults: &Faults) -> Option<Vec<us
     while let Some(i) = open.pop() {
         order.push(i);
         let mut children: Vec<usize> =
-            (0..specs.len()).filter(|c| specs[*c].parent.as_ref().is_some_and(|(p, _)| *p == specs[i].key)).collect();
-        children.sort_by(|a, b| distance(&specs[*b], &specs[i]).total_cmp(&distance(&specs[*a], &specs[i])));
+            (0..specs.len()).filter(|c| specs[*c].0.parent.as_ref().is_some_and(|(p, _)| *p == specs[i].0.key)).collect();
+        children.sort_by(|a, b| distance(&specs[*b].0, &specs[i].0).total_cmp(&distance(&specs[*a].0, &specs[i].0)));
         open.extend(children);
     }
     Some(order)
@@ -269,9 +432,9 @@ fn no_ephemeris(error: &EphemerisError, specs: &[BodySpec], masses: &[(String, M
 
 fn build(
     key: &str,
-    name: String,
+    top: Top,
     specs: Vec<BodySpec>,
-    masses: Vec<(String, Mass)>,
+    airs: Vec<AirSpec>,
     reliefs: Vec<Option<Arc<Relief>>>,
     hash: String,
 ) -> Result<System, Fault> {
@@ -282,9 +445,9 @@ fn build(
     let details = Details {
         figures: specs.iter().map(|s| s.figure.clone()).collect(),
         family_gm_m3_s2: specs.iter().map(|s| s.family_gm_m3_s2).collect(),
-        masses: masses.iter().map(|m| m.1).collect(),
+        masses: top.masses.iter().map(|m| m.1).collect(),
     };
-    let ephemeris = Ephemeris::detailed(&orbits, &details).map_err(|e| no_ephemeris(&e, &specs, &masses))?;
+    let ephemeris = Ephemeris::detailed(&orbits, &details).map_err(|e| no_ephemeris(&e, &specs, &top.masses))?;
     let soi = |i: usize| -> f64 {
         let Some(parent) = parents[i] else { return f64::INFINITY };
         let reach = ephemeris.reach(u16::try_from(i).map(BodyId).unwrap_or(BodyId(0)));
@@ -293,7 +456,7 @@ fn build(
         a * libm::pow(specs[i].gm_m3_s2 / specs[parent.index()].gm_m3_s2, 0.4)
     };
     let soi: Vec<f64> = (0..specs.len()).map(soi).collect();
-    let bodies = specs.iter().zip(&parents).zip(reliefs).zip(soi).map(|(((s, parent), relief), soi_radius_m)| Body {
+    let bodies = specs.iter().zip(&parents).zip(reliefs).zip(soi).zip(airs).map(|((((s, parent), relief), soi_radius_m), air)| Body {
         key: s.key.clone(),
         name: s.name.clone(),
         parent: *parent,
@@ -305,10 +468,11 @@ fn build(
         figure: s.figure.clone(),
         albedo: s.albedo,
         intensity_cd: s.intensity_cd,
-        air: s.air.clone().and_then(|a| Some(Air { column: a.column?, look: a.medium?.into() })),
+        air: air.column,
+        look: air.look,
         relief,
         relief_max: s.relief.as_ref().map_or(1.0, |(_, max)| *max),
     });
     let bodies = bodies.collect();
-    Ok(System::new(key.to_owned(), name, bodies, ephemeris, hash))
+    Ok(System::new(key.to_owned(), top.name, bodies, ephemeris, hash))
 }

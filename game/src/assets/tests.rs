@@ -1,6 +1,7 @@
 //! Malformed assets, one test a case: each must end in a message with the file, the line and what was expected. Also what mods may do.
 //! The real solar system is measured in [`sol`].
 
+mod optics;
 mod sol;
 
 use super::*;
@@ -48,22 +49,6 @@ epoch_jd_tdb = 2461265.25
 position_km = [1.0e8, 1.0e8, 0.0]
 velocity_km_s = [-20.0, 20.0, 0.0]
 with_moons = true
-[air.column]
-kind = "hydrostatic"
-drag_top_m = 100000.0
-temperature_k = 280.0
-pressure_pa = 90000.0
-molar_mass_kg_mol = 0.029
-heat_capacity_ratio = 1.4
-lapse = [{ to_altitude_m = 10000.0, k_per_m = -0.0065 }]
-[air.medium]
-top_altitude_m = 80000.0
-ground_albedo = [0.1, 0.1, 0.1]
-[[air.medium.layers]]
-scattering_per_m = [5.8e-6, 13.5e-6, 33.1e-6]
-absorption_per_m = [0.0, 0.0, 0.0]
-profile = { kind = "exponential", scale_height_m = 8000.0 }
-phase = { kind = "cornette_shanks", g = 0.8 }
 [relief]
 relief_max = 4.0
 ground = "rock"
@@ -75,6 +60,23 @@ plain_amplitude_m = 50.0
 gain = 0.5
 ridged = 0.2
 seed = 7
+"#;
+
+const AIR: &str = r#"top_altitude_m = 80000.0
+ground_albedo = [0.1, 0.1, 0.1]
+[[layers]]
+scattering_per_m = [5.8e-6, 13.5e-6, 33.1e-6]
+absorption_per_m = [0.0, 0.0, 0.0]
+profile = { kind = "exponential", scale_height_m = 8000.0 }
+phase = { kind = "cornette_shanks", g = 0.8 }
+[physics]
+kind = "hydrostatic"
+drag_top_m = 100000.0
+temperature_k = 280.0
+pressure_pa = 90000.0
+molar_mass_kg_mol = 0.029
+heat_capacity_ratio = 1.4
+lapse = [{ to_altitude_m = 10000.0, k_per_m = -0.0065 }]
 "#;
 
 const MOON: &str = r#"name = "Moon"
@@ -126,10 +128,11 @@ const TORCH: &str = include_str!("../../../assets/ships/torch.toml");
 fn assets() -> tempfile::TempDir {
     let dir = tempfile::tempdir().unwrap();
     for (path, text) in [
-        ("systems/t/system.toml", "name = \"T\"\n"),
-        ("systems/t/sun/body.toml", SUN),
-        ("systems/t/rock/body.toml", ROCK),
-        ("systems/t/moon/body.toml", MOON),
+        (SYSTEM_FILE, "name = \"T\"\nbodies = [\"moon\", \"rock\", \"sun\"]\n"),
+        (SUN_FILE, SUN),
+        (ROCK_FILE, ROCK),
+        (AIR_FILE, AIR),
+        (MOON_FILE, MOON),
         ("starts/here.toml", START),
         ("ships/torch.toml", TORCH),
     ] {
@@ -188,9 +191,11 @@ fn malformed(file: &str, from: &str, to: &str, line: usize, words: &[&str]) {
     assert!(!message.contains("NaN") || to.contains("nan"), "a placeholder shows in\n{message}");
 }
 
-const SUN_FILE: &str = "systems/t/sun/body.toml";
-const ROCK_FILE: &str = "systems/t/rock/body.toml";
-const MOON_FILE: &str = "systems/t/moon/body.toml";
+const SUN_FILE: &str = "bodies/sun/body.toml";
+const ROCK_FILE: &str = "bodies/rock/body.toml";
+const SYSTEM_FILE: &str = "systems/t/system.toml";
+const AIR_FILE: &str = "bodies/rock/atmosphere.toml";
+const MOON_FILE: &str = "bodies/moon/body.toml";
 const START_FILE: &str = "starts/here.toml";
 const SHIP_FILE: &str = "ships/torch.toml";
 
@@ -205,8 +210,8 @@ macro_rules! malformed {
 
 malformed! {
     unknown_key_at_the_top: ROCK_FILE, "radius_km" => "radus_km", line 4, ["unknown key `radus_km`", "did you mean `radius_km`?"];
-    unknown_key_in_a_table: ROCK_FILE, "temperature_k = 280.0" => "temperature_k = 280.0\ntemprature_c = 7.0", line 24, ["[air.column]", "temprature_c"];
-    unknown_table: ROCK_FILE, "[relief.noise]" => "[relief.nose]", line 40, ["unknown key `nose`", "did you mean `noise`?"];
+    unknown_key_in_a_table: AIR_FILE, "temperature_k = 280.0" => "temperature_k = 280.0\ntemprature_c = 7.0", line 12, ["[physics]", "temprature_c"];
+    unknown_table: ROCK_FILE, "[relief.noise]" => "[relief.nose]", line 24, ["unknown key `nose`", "did you mean `noise`?"];
     missing_key: ROCK_FILE, "gm_km3_s2 = 4.0e5\n" => "", line 1, ["missing key `gm_km3_s2`", "above 0"];
     missing_key_in_a_table: ROCK_FILE, "pole_dec_deg = 80.0\n" => "", line 6, ["missing key `pole_dec_deg` in [rotation]"];
     missing_table: MOON_FILE, "[rotation]" => "[rotatoin]", line 6, ["missing key `rotation`", "did you mean `rotation`?"];
@@ -240,17 +245,17 @@ malformed! {
     flag_as_text: ROCK_FILE, "with_moons = true" => "with_moons = \"yes\"", line 19, ["true or false, found a string"];
     date_for_a_number: ROCK_FILE, "meridian_deg = 10.0" => "meridian_deg = 2026-08-12", line 11, ["found a date"];
     ragged_terms: ROCK_FILE, "meridian_terms = [[1.0, 2.0, 3.0]]" => "meridian_terms = [[1.0, 2.0]]", line 13, ["lists of 3 numbers"];
-    unknown_column: ROCK_FILE, "kind = \"hydrostatic\"" => "kind = \"us67\"", line 21, ["did you mean `us76`?"];
-    impossible_air: ROCK_FILE, "heat_capacity_ratio = 1.4" => "heat_capacity_ratio = 14.0", line 26, ["heat_capacity_ratio", "from 1 to 1.7"];
-    lapse_below_zero_kelvin: ROCK_FILE, "to_altitude_m = 10000.0" => "to_altitude_m = 90000.0", line 27, ["lapse[0]", "from 1 to"];
-    phase_out_of_range: ROCK_FILE, "g = 0.8" => "g = 1.8", line 35, ["layers[0].phase.g", "0.99"];
-    unknown_profile: ROCK_FILE, "kind = \"exponential\"" => "kind = \"exponetial\"", line 34, ["did you mean `exponential`?"];
-    no_layers: ROCK_FILE, "[[air.medium.layers]]" => "[[air.medium.layer]]", line 31, ["did you mean `layers`?"];
-    medium_without_column: ROCK_FILE, "[air.column]" => "[air.colum]", line 20, ["missing key `column` in [air]", "did you mean `column`?"];
-    relief_max_below_one: ROCK_FILE, "relief_max = 4.0" => "relief_max = 0.5", line 37, ["from 1 to 1000"];
-    noise_out_of_range: ROCK_FILE, "gain = 0.5" => "gain = 0.9", line 44, ["relief.noise.gain"];
-    seed_with_a_fraction: ROCK_FILE, "seed = 7" => "seed = 7.5", line 46, ["whole number"];
-    unknown_ground: ROCK_FILE, "ground = \"rock\"" => "ground = \"rocks\"", line 38, ["did you mean `rock`?"];
+    unknown_physics: AIR_FILE, "kind = \"hydrostatic\"" => "kind = \"us67\"", line 9, ["did you mean `us76`?"];
+    impossible_air: AIR_FILE, "heat_capacity_ratio = 1.4" => "heat_capacity_ratio = 14.0", line 14, ["heat_capacity_ratio", "from 1 to 1.7"];
+    lapse_below_zero_kelvin: AIR_FILE, "to_altitude_m = 10000.0" => "to_altitude_m = 90000.0", line 15, ["lapse[0]", "from 1 to"];
+    phase_out_of_range: AIR_FILE, "g = 0.8" => "g = 1.8", line 7, ["layers[0].phase.g", "0.99"];
+    unknown_profile: AIR_FILE, "kind = \"exponential\"" => "kind = \"exponetial\"", line 6, ["did you mean `exponential`?"];
+    no_layers: AIR_FILE, "[[layers]]" => "[[layer]]", line 3, ["did you mean `layers`?"];
+    unknown_table_of_air: AIR_FILE, "[physics]" => "[phyiscs]", line 8, ["unknown key `phyiscs`", "did you mean `physics`?"];
+    relief_max_below_one: ROCK_FILE, "relief_max = 4.0" => "relief_max = 0.5", line 21, ["from 1 to 1000"];
+    noise_out_of_range: ROCK_FILE, "gain = 0.5" => "gain = 0.9", line 28, ["relief.noise.gain"];
+    seed_with_a_fraction: ROCK_FILE, "seed = 7" => "seed = 7.5", line 30, ["whole number"];
+    unknown_ground: ROCK_FILE, "ground = \"rock\"" => "ground = \"rocks\"", line 22, ["did you mean `rock`?"];
     start_under_another_name: START_FILE, "key = \"here\"" => "key = \"there\"", line 1, ["the file's name, \"here\""];
     start_without_ship: START_FILE, "ship = \"torch\"\n" => "", line 1, ["missing key `ship`"];
     start_on_no_date: START_FILE, "2026-08-12T17:30:00" => "2026-02-30", line 6, ["not a date of the calendar"];
@@ -272,7 +277,7 @@ fn all_faults_of_all_files_are_told_at_once() {
     put(dir.path(), MOON_FILE, MOON.replace("eccentricity", "ecentricity").as_bytes());
     let errors = load_system(dir.path(), &[], "t").unwrap_err();
     let message = errors.text();
-    for place in ["rock/body.toml:4:", "rock/body.toml:44:", "moon/body.toml:17:", "moon/body.toml:13:"] {
+    for place in ["rock/body.toml:4:", "rock/body.toml:28:", "moon/body.toml:17:", "moon/body.toml:13:"] {
         assert!(message.replace('\\', "/").contains(place), "{place} in\n{message}");
     }
     assert_eq!(errors.faults.len(), 4, "{message}");
@@ -298,11 +303,14 @@ fn a_file_that_is_too_large_is_not_read_whole() {
 }
 
 #[test]
-fn a_folder_without_its_file_and_an_unknown_system_are_named() {
+fn what_is_listed_and_not_there_is_named() {
     let dir = assets();
-    fs::create_dir(dir.path().join("systems/t/empty")).unwrap();
+    put(dir.path(), SYSTEM_FILE, b"name = \"T\"\nbodies = [\"sun\", \"rokc\", \"moon\"]\n");
     let message = load_system(dir.path(), &[], "t").unwrap_err().text();
-    assert!(message.contains("empty") && message.contains("the file is missing"), "{message}");
+    assert!(
+        message.contains("system.toml:2:18") && message.contains("no body \"rokc\"") && message.contains("did you mean `rock`?"),
+        "{message}"
+    );
     let message = load_system(dir.path(), &[], "tt").unwrap_err().text();
     assert!(message.contains("did you mean `t`?"), "{message}");
     let message = Assets::new(dir.path().to_owned(), Vec::new()).ship("toch").unwrap_err().text();
@@ -348,10 +356,11 @@ fn mods_add_replace_and_modify() {
     let one = tempfile::tempdir().unwrap();
     let moonlet =
         MOON.replace("Moon", "Moonlet").replace("221700.0", "90000.0").replace("deg_per_day = 30.0\nplane", "deg_per_day = 115.97\nplane");
-    put(one.path(), "systems/t/moonlet/body.toml", moonlet.as_bytes());
-    put(one.path(), "systems/t/rock/body.patch.toml", b"radius_km = 7000.0\n[relief.noise]\nseed = 8\n");
+    put(one.path(), "bodies/moonlet/body.toml", moonlet.as_bytes());
+    put(one.path(), "bodies/rock/body.patch.toml", b"radius_km = 7000.0\n[relief.noise]\nseed = 8\n");
+    put(one.path(), "systems/t/system.patch.toml", b"bodies.add = [\"moonlet\"]\n");
     let two = tempfile::tempdir().unwrap();
-    put(two.path(), "systems/t/moon/body.toml", MOON.replace("radius_km = 500.0", "radius_km = 600.0").as_bytes());
+    put(two.path(), "bodies/moon/body.toml", MOON.replace("radius_km = 500.0", "radius_km = 600.0").as_bytes());
     let mods = [one.path().to_owned(), two.path().to_owned()];
     let modded = load_system(dir.path(), &mods, "t").unwrap();
     let radius = |key: &str| modded.find(key).map(|id| modded.body(id).radius_m);
@@ -359,32 +368,91 @@ fn mods_add_replace_and_modify() {
     assert_eq!(modded.find("moonlet").unwrap().0, 2, "nearer than the moon: before it");
     assert!(modded.body(modded.find("rock").unwrap()).air.is_some(), "what the patch leaves out stays");
     assert_ne!(base.hash, modded.hash);
-    let patch = put(one.path(), "systems/t/rock/body.patch.toml", b"\n\nradius_km = -7.0\n");
+    let patch = put(one.path(), "bodies/rock/body.patch.toml", b"\n\nradius_km = -7.0\n");
     let message = load_system(dir.path(), &mods, "t").unwrap_err().text();
     assert!(message.contains(&format!("{}:3:", patch.display())), "the fault is in the patch:\n{message}");
 }
 
 #[test]
-fn the_hash_follows_the_files_and_not_their_line_ends() {
+fn the_hash_follows_what_a_flight_depends_on() {
     let dir = assets();
-    let hash = || load_system(dir.path(), &[], "t").unwrap().hash.clone();
+    let hash = || load_system(dir.path(), &[], "t").unwrap_or_else(|e| panic!("{}", e.text())).hash.clone();
     let before = hash();
+    // Line ends, comments, how numbers are written, colours and what the air looks like are no difference.
     put(dir.path(), MOON_FILE, MOON.replace('\n', "\r\n").as_bytes());
+    put(dir.path(), ROCK_FILE, ROCK.replace("albedo = [0.3, 0.3", "# grey\nalbedo = [0.2, 0.3").replace("6000.0", "6e3").as_bytes());
+    put(dir.path(), AIR_FILE, AIR.replace("5.8e-6", "9.9e-6").replace("g = 0.8", "g = 0.7").as_bytes());
+    put(dir.path(), SYSTEM_FILE, b"name = \"U\"\nbodies = [\"sun\", \"moon\", \"rock\"]\n");
     assert_eq!(before, hash());
+    put(dir.path(), AIR_FILE, AIR.replace("pressure_pa = 90000.0", "pressure_pa = 90001.0").as_bytes());
+    let drags = hash();
+    assert_ne!(before, drags);
     put(dir.path(), MOON_FILE, MOON.replace("radius_km = 500.0", "radius_km = 500.5").as_bytes());
-    assert_ne!(before, hash());
+    assert_ne!(drags, hash());
+}
+
+#[test]
+fn a_patch_changes_a_list_by_the_names_in_it() {
+    let dir = assets();
+    let named = AIR.replace("[[layers]]\n", "[[layers]]\nname = \"gas\"\n");
+    put(dir.path(), AIR_FILE, named.as_bytes());
+    let one = tempfile::tempdir().unwrap();
+    let mods = [one.path().to_owned()];
+    let look = |patch: &str| {
+        put(one.path(), "bodies/rock/atmosphere.patch.toml", patch.as_bytes());
+        load_system(dir.path(), &mods, "t")
+            .map(|s| s.body(s.find("rock").unwrap()).look.clone().unwrap().medium.layers)
+            .map_err(|e| e.text())
+    };
+    let blue = look("[layers.gas]\nscattering_per_m = [1e-6, 2e-6, 9e-6]\n").unwrap();
+    assert_eq!((blue.len(), blue[0].scattering_per_m), (1, glam::Vec3::new(1e-6, 2e-6, 9e-6)));
+    let fog = "[[layers.add]]\nname = \"fog\"\nscattering_per_m = [1e-4, 1e-4, 1e-4]\nabsorption_per_m = [0, 0, 0]\n\
+        profile = { kind = \"exponential\", scale_height_m = 200 }\nphase = { kind = \"rayleigh\" }\n";
+    assert_eq!(look(fog).unwrap().len(), 2);
+    assert_eq!(look(&format!("layers.remove = [\"gas\"]\n{fog}")).unwrap().len(), 1);
+    let wrong = look("[layers.gsa]\nscattering_per_m = [1e-6, 2e-6, 9e-6]\n").unwrap_err();
+    assert!(
+        wrong.contains("atmosphere.patch.toml:1:9") && wrong.contains("no item named `gsa`") && wrong.contains("did you mean `gas`?"),
+        "{wrong}"
+    );
+    let wrong = look("layers.remove = [\"sag\"]\n").unwrap_err();
+    assert!(wrong.contains("atmosphere.patch.toml:1:18") && wrong.contains("no item named `sag`"), "{wrong}");
+}
+
+#[test]
+fn a_patch_of_what_is_not_there_is_named_itself() {
+    let dir = assets();
+    let one = tempfile::tempdir().unwrap();
+    let patch = put(one.path(), "bodies/rokc/atmosphere.patch.toml", b"top_altitude_m = 1e5\n");
+    let wrong = |mods: &[PathBuf]| load_system(dir.path(), mods, "t").unwrap_err().text();
+    let message = wrong(&[one.path().to_owned()]);
+    assert!(message.contains(&patch.display().to_string()) && message.contains("did you mean `rock`?"), "{message}");
+    assert!(!message.contains("the file is missing"), "{message}");
+    // An airless body has no atmosphere that could be changed.
+    fs::remove_dir_all(one.path().join("bodies")).unwrap();
+    let patch = put(one.path(), "bodies/moon/atmosphere.patch.toml", b"top_altitude_m = 1e5\n");
+    let message = wrong(&[one.path().to_owned()]);
+    assert!(message.contains(&patch.display().to_string()) && message.contains("there is no `bodies/moon/atmosphere.toml`"), "{message}");
+    // A later mod that brings the file replaces all that lies under it.
+    let two = tempfile::tempdir().unwrap();
+    put(two.path(), "bodies/moon/atmosphere.toml", AIR.as_bytes());
+    let message = wrong(&[one.path().to_owned(), two.path().to_owned()]);
+    assert!(message.contains(&patch.display().to_string()) && message.contains("changes nothing"), "{message}");
+    load_system(dir.path(), &[two.path().to_owned(), one.path().to_owned()], "t").unwrap_or_else(|e| panic!("{}", e.text()));
 }
 
 #[test]
 fn a_watched_folder_reloads_and_a_broken_file_is_told() {
     let dir = assets();
-    let reloader = Reloader::watch(&Assets::new(dir.path().to_owned(), Vec::new()), "t").unwrap();
+    let assets = Assets::new(dir.path().to_owned(), Vec::new());
+    let reloader = Reloader::watch(&assets, "t").unwrap();
+    let first = assets.system("t", &|_, _| ()).unwrap();
     let wait = |what: &str| {
-        for _ in 0..100 {
-            if let Some(outcome) = reloader.poll() {
+        for _ in 0..1000 {
+            if let Some(outcome) = reloader.poll(&first) {
                 return outcome;
             }
-            std::thread::sleep(std::time::Duration::from_millis(50));
+            std::thread::sleep(std::time::Duration::from_millis(5));
         }
         panic!("nothing came: {what}");
     };
@@ -393,4 +461,91 @@ fn a_watched_folder_reloads_and_a_broken_file_is_told() {
     assert_eq!(system.body(system.find("moon").unwrap()).radius_m, 5.01e5);
     put(dir.path(), MOON_FILE, b"radius_km = ");
     assert!(wait("a broken file").unwrap_err().text().contains("not TOML"));
+}
+
+#[test]
+fn a_saved_sky_is_there_within_three_tenths_of_a_second() {
+    use std::time::{Duration, Instant};
+    let dir = assets();
+    let file = put(dir.path(), AIR_FILE, AIR.as_bytes());
+    let assets = Assets::new(dir.path().to_owned(), Vec::new());
+    let first = assets.system("t", &|_, _| ()).unwrap();
+    let reloader = Reloader::watch(&assets, "t").unwrap();
+    let blue = |system: &System| system.body(system.find("rock").unwrap()).look.as_ref().unwrap().medium.layers[0].scattering_per_m.z;
+    // As editors save: over the file, in two writes, through a file beside it and a rename.
+    let mut best = Duration::MAX;
+    for (i, way) in [0, 1, 2].into_iter().cycle().take(6).enumerate() {
+        let value = 1e-5 + 1e-6 * i as f32;
+        let text = AIR.replace("33.1e-6", &format!("{value:e}"));
+        let began = Instant::now();
+        match way {
+            0 => fs::write(&file, &text).unwrap(),
+            1 => {
+                fs::write(&file, &text[..text.len() / 2]).unwrap();
+                std::thread::sleep(Duration::from_millis(5));
+                fs::write(&file, &text).unwrap();
+            }
+            _ => {
+                let beside = file.with_file_name(".atmosphere.toml.swp");
+                fs::write(&beside, &text).unwrap();
+                fs::rename(&beside, &file).unwrap();
+            }
+        }
+        loop {
+            match reloader.poll(&first) {
+                Some(Ok(system)) if blue(&system) == value => break,
+                Some(Err(e)) => panic!("{}", e.text()),
+                _ => assert!(began.elapsed() < Duration::from_secs(20), "way {way}: nothing came"),
+            }
+            std::thread::sleep(Duration::from_millis(2));
+        }
+        best = best.min(began.elapsed());
+    }
+    println!("saved to read: {best:?}");
+    assert!(best < Duration::from_millis(300), "{best:?}");
+    // What an editor leaves beside it changes nothing; a file that is taken away does.
+    put(dir.path(), "bodies/rock/atmosphere.toml~", b"x");
+    put(dir.path(), "bodies/rock/.atmosphere.toml.swx", b"x");
+    std::thread::sleep(Duration::from_millis(250));
+    assert_eq!(reloader.changed(), None);
+    fs::remove_file(&file).unwrap();
+    let gone = (0..2000).find_map(|_| {
+        std::thread::sleep(Duration::from_millis(5));
+        reloader.poll(&first)
+    });
+    let system = gone.unwrap().unwrap();
+    assert!(system.body(system.find("rock").unwrap()).look.is_none());
+}
+
+#[test]
+fn an_air_that_is_hardly_meant_is_told_and_taken() {
+    let dir = assets();
+    let warned = |from: &str, to: &str| {
+        assert!(AIR.contains(from), "{from}");
+        put(dir.path(), AIR_FILE, AIR.replace(from, to).as_bytes());
+        load_system(dir.path(), &[], "t").unwrap_or_else(|e| panic!("{}", e.text())).warnings.clone()
+    };
+    assert_eq!(warned("g = 0.8", "g = 0.8"), [""; 0]);
+    for (from, to, line, words) in [
+        ("[5.8e-6, 13.5e-6, 33.1e-6]", "[5.8e-3, 13.5e-3, 33.1e-3]", 4, "look like values per kilometre"),
+        ("top_altitude_m = 80000.0", "top_altitude_m = 20000.0", 1, "a hard edge"),
+        ("scattering_per_m = [5.8e-6, 13.5e-6, 33.1e-6]", "scattering_per_m = [0.9, 13.5e-6, 33.1e-6]", 3, "no light comes through"),
+    ] {
+        let warnings = warned(from, to);
+        let told = |w: &String| {
+            w.contains(&format!("atmosphere.toml:{line}:")) && w.contains("warning: ") && w.contains(words) && w.contains("help: ")
+        };
+        assert!(warnings.iter().any(told), "{to}: {warnings:#?}");
+    }
+    let rayleigh = |h: &str| {
+        put(
+            dir.path(),
+            AIR_FILE,
+            AIR.replace("kind = \"cornette_shanks\", g = 0.8", "kind = \"rayleigh\"").replace("8000.0", h).as_bytes(),
+        );
+        load_system(dir.path(), &[], "t").unwrap().warnings.clone()
+    };
+    assert_eq!(rayleigh("8000.0"), [""; 0]);
+    let told = rayleigh("4000.0");
+    assert!(told.len() == 1 && told[0].contains("p ≠ ρ R T / M") && told[0].contains("atmosphere.toml:6:"), "{told:#?}");
 }

@@ -1,8 +1,13 @@
 //! The tree of a TOML file in which every key and value knows its place, also after patches from other files were laid over it.
 //!
+//! A patch holds only what it changes. Tables merge key by key, but for one whose `kind` changes: the keys of the old kind go with it.
+//! A value or a list replaces what was there. A *table* laid over a
+//! *list* changes items of the list: `[layers.dust]` patches the item whose `name` is `dust`, `remove = ["ozone"]` takes items out,
+//! `add = [...]` appends.
+//!
 //! Not here: what the keys mean ([`super::reader`]).
 
-use super::fault::{At, Fault, Source};
+use super::fault::{At, Fault, Source, nearest};
 use std::sync::Arc;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -110,22 +115,100 @@ fn convert_table(source: &Arc<Source>, table: &DeTable<'_>) -> Data {
     Data::Table(entries)
 }
 
+/// Lays a table over a list: `add`, `remove`, and items by their names.
+fn change(list: &mut Vec<Node>, changes: Vec<Entry>, faults: &mut Vec<Fault>) {
+    let unknown = |list: &[Node], at: &At, name: &str| {
+        let fault = Fault::at(at, format!("the list has no item named `{name}`: expected the name of one, or `add` or `remove`"));
+        fault.help(nearest(name, list.iter().filter_map(Node::name)))
+    };
+    for Entry { key, key_at, value } in changes {
+        match (key.as_str(), value.data) {
+            ("add", Data::Array(new)) => list.extend(new),
+            ("remove", Data::Array(names)) => {
+                for name in &names {
+                    let found = name.text().and_then(|n| list.iter().position(|item| item.name() == Some(n)));
+                    match (found, name.text()) {
+                        (Some(i), _) => drop(list.remove(i)),
+                        (None, Some(text)) => faults.push(unknown(list, &name.at, text)),
+                        (None, None) => faults.push(Fault::at(&name.at, "`remove`: expected names of items")),
+                    }
+                }
+            }
+            ("add" | "remove", _) => faults.push(Fault::at(&value.at, format!("`{key}`: expected a list"))),
+            (name, data) => match list.iter_mut().find(|item| item.name() == Some(name)) {
+                Some(item) if matches!(data, Data::Table(_)) => item.patch(Node { at: value.at, data }, faults),
+                Some(_) => faults.push(Fault::at(&value.at, format!("`{name}`: expected a table with the keys to change"))),
+                None => faults.push(unknown(list, &key_at, name)),
+            },
+        }
+    }
+}
+
 impl Node {
-    /// Lays a patch over this tree: tables merge key by key, everything else is replaced.
-    pub fn patch(&mut self, patch: Self) {
+    /// Lays a patch over this tree (the rules are at the head); faults are what a list does not have.
+    pub fn patch(&mut self, patch: Self, faults: &mut Vec<Fault>) {
         match (&mut self.data, patch.data) {
             (Data::Table(mine), Data::Table(theirs)) => {
+                let kind = |list: &[Entry]| list.iter().find(|e| e.key == "kind").and_then(|e| e.value.text().map(str::to_owned));
+                if kind(&theirs).is_some_and(|new| kind(mine).is_some_and(|old| old != new)) {
+                    *mine = theirs;
+                    return;
+                }
                 for entry in theirs {
                     match mine.iter_mut().find(|e| e.key == entry.key) {
-                        Some(old) if matches!((&old.value.data, &entry.value.data), (Data::Table(_), Data::Table(_))) => {
-                            old.value.patch(entry.value);
+                        Some(old) if matches!((&old.value.data, &entry.value.data), (Data::Table(_) | Data::Array(_), Data::Table(_))) => {
+                            old.value.patch(entry.value, faults);
                         }
                         Some(old) => *old = entry,
                         None => mine.push(entry),
                     }
                 }
             }
+            (Data::Array(list), Data::Table(changes)) => change(list, changes, faults),
             (_, data) => *self = Self { at: patch.at, data },
+        }
+    }
+
+    /// What a list's item is called: itself where it is a string, else its `name`.
+    fn name(&self) -> Option<&str> {
+        match &self.data {
+            Data::Text(s) => Some(s),
+            _ => self.get("name").and_then(|e| e.value.text()),
+        }
+    }
+
+    /// The string, where this is one.
+    pub fn text(&self) -> Option<&str> {
+        if let Data::Text(s) = &self.data { Some(s) } else { None }
+    }
+
+    /// Feeds the values to a hash: comments, the order of keys and the way in which a number is written make no difference.
+    pub fn digest(&self, hash: &mut blake3::Hasher) {
+        let text = |hash: &mut blake3::Hasher, kind: &[u8], s: &str| {
+            hash.update(kind).update(&(s.len() as u64).to_le_bytes()).update(s.as_bytes());
+        };
+        let put = |hash: &mut blake3::Hasher, bytes: &[u8]| {
+            hash.update(bytes);
+        };
+        match &self.data {
+            Data::Text(s) => text(hash, b"s", s),
+            // −0 is 0.
+            Data::Number(x) => text(hash, b"n", &format!("{:016x}", (x + 0.0).to_bits())),
+            Data::Bool(b) => put(hash, if *b { b"y" } else { b"f" }),
+            Data::Date => put(hash, b"d"),
+            Data::Array(list) => {
+                hash.update(b"a").update(&(list.len() as u64).to_le_bytes());
+                list.iter().for_each(|item| item.digest(hash));
+            }
+            Data::Table(entries) => {
+                hash.update(b"t").update(&(entries.len() as u64).to_le_bytes());
+                let mut entries: Vec<&Entry> = entries.iter().collect();
+                entries.sort_by(|a, b| a.key.cmp(&b.key));
+                for entry in entries {
+                    text(hash, b"k", &entry.key);
+                    entry.value.digest(hash);
+                }
+            }
         }
     }
 

@@ -198,7 +198,7 @@ fn track(painter: &Painter, rect: Rect, scene: &Scene<'_>, id: BodyId) {
     let period = scene.readout.orbit.period_s;
     let seconds = if period.is_finite() { (1.5 * period).min(10.0 * 86_400.0) } else { 7_200.0 };
     let body = scene.world.system.body(id);
-    let mut course = Course::of(&scene.world.system, *coast.path.knot());
+    let mut course = Course::of(&scene.world.system, *coast.path.knot(), scene.world.ship.light_m3_s2(&scene.world.system));
     let mut last: Option<Pos2> = None;
     for i in 0..=300_u32 {
         let t = scene.world.time.plus(ticks(seconds * f64::from(i) / 300.0));

@@ -1,11 +1,14 @@
 //! `syzygy check-assets [DIR]`: reads every asset of a folder and tells everything that is wrong with it, at once.
 //!
-//! DIR may be an assets folder, a mod (checked as it would lie over the assets in use), a system or a body.
+//! DIR may be an assets folder, a mod (checked as it would lie over the assets in use), a system or a body of either.
 
 use super::{Error, places};
 use crate::assets::{AssetErrors, Assets};
 use crate::cli::CheckAssetsArgs;
 use std::path::{Path, PathBuf};
+
+/// What an assets folder has, and a mod seldom has all of.
+const WHOLE: [&str; 4] = ["systems", "bodies", "ships", "starts"];
 
 /// Checks what the command line names; one line on what was found good.
 ///
@@ -17,35 +20,52 @@ pub fn run(args: &CheckAssetsArgs) -> Result<String, Error> {
         Some(dir) if !dir.is_dir() => return Err(places::PlaceError::NoFolder { path: dir.clone(), what: "check-assets" }.into()),
         dir => dir.as_ref().map(|d| d.canonicalize().unwrap_or_else(|_| d.clone())),
     };
-    let Some((root, system)) = dir.map(|d| root_of(&d)) else {
-        return Ok(check(&Assets::new(places::assets(&args.places)?, mods), None)?);
+    let Some((root, part)) = dir.map(|d| root_of(&d)) else {
+        return Ok(check(&Assets::new(places::assets(&args.places)?, mods), &Part::All)?);
     };
-    let own = Assets::new(root.clone(), Vec::new());
-    let complete = !own.systems().is_empty() && system.as_ref().is_none_or(|s| own.systems().contains(s));
-    let assets =
-        if complete { own } else { Assets::new(places::assets(&args.places)?, mods.into_iter().chain(std::iter::once(root)).collect()) };
-    Ok(check(&assets, system.as_deref())?)
-}
-
-/// Checks one system, or everything.
-pub fn check(assets: &Assets, system: Option<&str>) -> Result<String, AssetErrors> {
-    if let Some(key) = system {
-        let system = assets.system(key, &|_, _| ())?;
-        return Ok(format!("all sound: system {key} with {} bodies", system.bodies.len()));
+    if WHOLE.iter().all(|folder| root.join(folder).is_dir()) {
+        return Ok(check(&Assets::new(root, mods), &part)?);
     }
-    assets.check()?;
-    let (systems, ships, starts) = (assets.systems().len(), assets.ships().len(), assets.starts().len());
-    Ok(format!("all sound: {systems} systems, {ships} ships, {starts} starts"))
+    let assets = Assets::new(places::assets(&args.places)?, mods.into_iter().chain(std::iter::once(root)).collect());
+    Ok(check(&assets, &part)?)
 }
 
-/// The assets or mod folder that a folder belongs to, and the system when it is one or a body of one:
-/// `ROOT/systems/<system>[/<body>]`.
-fn root_of(dir: &Path) -> (PathBuf, Option<String>) {
-    let is_body = dir.join("body.toml").is_file() || dir.join("body.patch.toml").is_file();
-    let folder = if is_body { dir.parent().unwrap_or(dir) } else { dir };
-    let systems = folder.parent().filter(|p| p.file_name().is_some_and(|n| n == "systems"));
-    match (systems.and_then(Path::parent), folder.file_name()) {
-        (Some(root), Some(name)) => (root.to_owned(), Some(name.to_string_lossy().into_owned())),
-        _ => (dir.to_owned(), None),
+/// What a folder is: a body or a system in an assets or mod folder, or such a folder itself.
+#[derive(Debug, PartialEq, Eq)]
+enum Part {
+    Body(String),
+    System(String),
+    All,
+}
+
+/// Checks a part.
+fn check(assets: &Assets, part: &Part) -> Result<String, AssetErrors> {
+    match part {
+        Part::Body(key) => {
+            let systems = assets.check_body(key)?;
+            Ok(format!("all sound: body {key}, listed by {}", if systems.is_empty() { "no system".to_owned() } else { systems.join(", ") }))
+        }
+        Part::System(key) => {
+            let system = assets.system(key, &|_, _| ())?;
+            Ok(format!("all sound: system {key} with {} bodies", system.bodies.len()))
+        }
+        Part::All => {
+            assets.check()?;
+            let (systems, bodies, ships, starts) =
+                (assets.systems().len(), assets.bodies().len(), assets.ships().len(), assets.starts().len());
+            Ok(format!("all sound: {systems} systems, {bodies} bodies, {ships} ships, {starts} starts"))
+        }
+    }
+}
+
+/// The assets or mod folder that a folder belongs to (`ROOT/systems/<system>`, `ROOT/bodies/<body>`), and what of it it is.
+fn root_of(dir: &Path) -> (PathBuf, Part) {
+    let name = dir.file_name().map(|n| n.to_string_lossy().into_owned());
+    let folder = dir.parent();
+    let root = folder.and_then(Path::parent);
+    match (root, folder.and_then(Path::file_name).and_then(|n| n.to_str()), name) {
+        (Some(root), Some("systems"), Some(name)) => (root.to_owned(), Part::System(name)),
+        (Some(root), Some("bodies"), Some(name)) => (root.to_owned(), Part::Body(name)),
+        _ => (dir.to_owned(), Part::All),
     }
 }

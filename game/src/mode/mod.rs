@@ -58,6 +58,10 @@ pub enum Error {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Kepler(#[from] probe::kepler::KeplerError),
+    /// No radiances.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Sky(#[from] probe::sky::SkyError),
     /// No case of orbital motion.
     #[error(transparent)]
     #[diagnostic(transparent)]
@@ -80,7 +84,7 @@ pub enum Error {
         help: String,
     },
     /// A body without air.
-    #[error("{0} has no air: it has no [air] table")]
+    #[error("{0} has no air that drags: it has no atmosphere.toml with a [physics] table")]
     NoAir(String),
     /// An answer cannot be written.
     #[error("{}: cannot be written: {source}", path.display())]
@@ -124,7 +128,9 @@ impl Error {
     fn exit_code(&self) -> ExitCode {
         use studio::StudioError::Gpu;
         match self {
-            Self::Shot(shot::ShotError::Studio(Gpu(_))) | Self::Headless(headless::HeadlessError::Studio(Gpu(_))) => ExitCode::from(2),
+            Self::Sky(probe::sky::SkyError::Gpu(_))
+            | Self::Shot(shot::ShotError::Studio(Gpu(_)))
+            | Self::Headless(headless::HeadlessError::Studio(Gpu(_))) => ExitCode::from(2),
             _ => ExitCode::FAILURE,
         }
     }
@@ -181,10 +187,12 @@ fn places_of(mode: &Mode) -> &Places {
         Mode::Probe(Probe::Ephemeris(a)) => &a.common.places,
         Mode::Probe(Probe::Eclipses(a)) => &a.common.places,
         Mode::Probe(Probe::Propagate(a)) => &a.common.places,
+        Mode::Probe(Probe::Sky(a)) => &a.places,
         Mode::Bench(Bench::Orbit(a)) => &a.places,
         Mode::Bench(Bench::Ships(a)) => &a.places,
         Mode::Bench(Bench::Kepler(a)) => &a.places,
         Mode::Bench(Bench::Ephemeris(a)) => &a.places,
+        Mode::Bench(Bench::Air(a)) => &a.places,
     }
 }
 

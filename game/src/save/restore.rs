@@ -14,7 +14,7 @@ use crate::world::ship::spec::ShipSpec;
 use crate::world::ship::{Coast, CoastAttitude, Effort, Motion, Resting, Rigid, Ship};
 use crate::world::system::System;
 use engine::orbit::path::twofold::Twofold;
-use engine::orbit::path::{End, Knot, Path};
+use engine::orbit::path::{End, Knot, Path, Setting};
 use engine::orbit::{BodyId, State, kepler};
 use engine::rigid::{Contact, LegState, PatchKey};
 use engine::space::{Position, Rotation, Vector, Velocity};
@@ -38,6 +38,8 @@ const MOST_LEGS: usize = 64;
 /// Collects what is wrong while it converts.
 struct Checker<'a> {
     system: &'a System,
+    /// Of the ship that is restored (see [`Setting`]).
+    light_m3_s2: f64,
     problems: Vec<String>,
 }
 
@@ -47,7 +49,8 @@ impl SaveV1 {
     /// # Errors
     /// Every field that cannot be right, with what was expected.
     pub fn restore(&self, system: &Arc<System>, spec: &Arc<ShipSpec>) -> Result<World, Vec<String>> {
-        let mut c = Checker { system, problems: Vec::new() };
+        let light_m3_s2 = spec.light_m3_s2(spec.mass.dry_kg + self.ship.propellant_kg, system);
+        let mut c = Checker { system, light_m3_s2, problems: Vec::new() };
         if self.system != system.key {
             c.problems.push(format!("system: it was saved in `{}`, loaded is `{}`", self.system, system.key));
         }
@@ -188,7 +191,8 @@ impl Checker<'_> {
     /// system it may take some steps.
     fn path(&mut self, knot: Knot, now: SimTime) -> Path {
         let (gravity, places) = (&self.system.gravity, &self.system.ephemeris);
-        let mut path = Path::new(gravity, places, knot);
+        let setting = Setting { light_m3_s2: self.light_m3_s2, ..Setting::default() };
+        let mut path = Path::with(gravity, places, knot, setting);
         if !self.problems.is_empty() {
             return path;
         }

@@ -127,7 +127,7 @@ impl Stage<'_> {
             }
             _ => Surface::Smooth,
         };
-        let shell = body.radius_m + body.air.as_ref().map_or(0.0, |a| a.look.medium.top_altitude_m);
+        let shell = body.radius_m + body.look.as_ref().map_or(0.0, |a| a.medium.top_altitude_m);
         Body {
             id: id.0,
             centre_m: narrow3(centre),
@@ -148,7 +148,7 @@ impl Stage<'_> {
                 .collect(),
             albedo: body.albedo,
             surface,
-            air: body.air.as_ref().filter(|_| radius_px >= AIR_FROM_PX).map(|a| a.look.clone()),
+            air: body.look.as_ref().filter(|_| radius_px >= AIR_FROM_PX).cloned(),
         }
     }
 }

@@ -17,7 +17,7 @@ mod tests;
 
 use crate::command::{Action, Axes, Commands, Guidance, Hold, Target, WARP_ONE, WARP_QUARTERS};
 use engine::orbit::path::model::LEAVE;
-use engine::orbit::path::{End, Event, Knot, Path};
+use engine::orbit::path::{End, Event, Knot, Path, Setting};
 use engine::orbit::{BodyId, State};
 use engine::space::{Position, Rotation, Vector, Velocity};
 use engine::time::SimTime;
@@ -79,6 +79,11 @@ impl World {
         let same = |(a, b): (&system::Body, &system::Body)| a.key == b.key && a.parent == b.parent;
         if self.system.bodies.len() != system.bodies.len() || !self.system.bodies.iter().zip(&system.bodies).all(same) {
             return false;
+        }
+        // Only what is seen has changed: the flight goes on to the bit.
+        if self.system.hash == system.hash {
+            self.system = system.clone();
+            return true;
         }
         self.leave_path();
         if let Motion::Landed(rest) | Motion::Crashed(rest) = &mut self.ship.motion {
@@ -296,7 +301,8 @@ impl World {
 
     /// Begins a sampled path.
     fn start_path(&mut self, knot: Knot, attitude: CoastAttitude, since: SimTime) {
-        let path = Path::new(&self.system.gravity, &self.system.ephemeris, knot);
+        let setting = Setting { light_m3_s2: self.ship.light_m3_s2(&self.system), ..Setting::default() };
+        let path = Path::with(&self.system.gravity, &self.system.ephemeris, knot, setting);
         self.ship.motion = Motion::Coast(Coast::new(path, attitude, since));
     }
 

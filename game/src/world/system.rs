@@ -3,7 +3,8 @@
 use super::eclipse::almanac::Almanac;
 use super::ship::local::air_top_m;
 use super::ship::warp::floor_m;
-use engine::air::density::Column;
+use engine::air::{Air, Column};
+use engine::light::spectrum::Starlight;
 use engine::orbit::eclipse::Shape;
 use engine::orbit::ephemeris::Ephemeris;
 use engine::orbit::field::{Bound, Source};
@@ -14,17 +15,14 @@ use engine::orbit::{BodyId, State, kepler};
 use engine::space::Centred;
 use engine::terrain::Relief;
 use engine::time::SimTime;
+use engine::units::SPEED_OF_LIGHT;
 use glam::Vec3;
 use std::sync::Arc;
 
-/// The air of a body: what drags (`column`) and what one sees (`look`), described apart.
-#[derive(Clone, Debug)]
-pub struct Air {
-    /// Temperature, pressure and density against altitude.
-    pub column: Column,
-    /// Optical layers, and the model that draws them.
-    pub look: engine::air::Air,
-}
+/// Luminance of the linear sRGB primaries (IEC 61966-2-1).
+const LUMINANCE: Vec3 = Vec3::new(0.2126, 0.7152, 0.0722);
+/// Luminous efficacy of the Sun's light above the air, lm/W: 1.28e5 lx of 1361 W/m².
+const SUN_LM_W: f64 = 94.04;
 
 /// A body of the system.
 #[derive(Clone, Debug)]
@@ -51,8 +49,10 @@ pub struct Body {
     pub albedo: Vec3,
     /// Luminous intensity, cd per linear sRGB channel; zero for all but stars.
     pub intensity_cd: Vec3,
-    /// Its air, if any.
-    pub air: Option<Air>,
+    /// Its air as it drags, if any: temperature, pressure and density against altitude.
+    pub air: Option<Column>,
+    /// Its air as it looks, if any. Nothing in the World reads it, so that its colours are no part of a flight.
+    pub look: Option<Air>,
     /// Its ground; `None` for the star and the giants (a ship sinks and is crushed: see `ship::contact`).
     pub relief: Option<Arc<Relief>>,
     /// Largest factor by which relief is exaggerated from afar (1 = never).
@@ -70,10 +70,18 @@ pub struct System {
     pub bodies: Vec<Body>,
     /// Where they are.
     pub ephemeris: Ephemeris,
+    /// Force of the star's light on a black square metre times the square of its distance, N: as much per candela as the Sun's.
+    pub light_n: f64,
+    /// Spectrum of the star's light, by which airs are read anew.
+    pub starlight: Starlight,
     /// How they attract a ship, and where one changes from one to the other.
     pub gravity: Model,
     /// blake3 of the asset files that the World depends on, hex; a replay refuses others.
     pub hash: String,
+    /// The same without the air: what stays when only airs are read anew.
+    pub solid_hash: String,
+    /// What its files hold that can be used and is hardly meant, for people to read.
+    pub warnings: Vec<String>,
     /// What is known of its eclipses so far.
     pub eclipses: Almanac,
 }
@@ -95,20 +103,33 @@ impl System {
             }
         };
         let gravity = Model::new(bodies.iter().enumerate().map(as_met).collect(), Bound::COAST);
-        Self { key, name, bodies, ephemeris, gravity, hash, eclipses: Almanac::default() }
+        let light_n = bodies.first().map_or(0.0, |star| f64::from(star.intensity_cd.dot(LUMINANCE)) / SUN_LM_W / SPEED_OF_LIGHT);
+        Self {
+            key,
+            name,
+            bodies,
+            ephemeris,
+            light_n,
+            starlight: Starlight::default(),
+            gravity,
+            hash,
+            solid_hash: String::new(),
+            warnings: Vec::new(),
+            eclipses: Almanac::default(),
+        }
     }
     /// The body behind a handle.
     pub fn body(&self, id: BodyId) -> &Body {
         &self.bodies[id.index()]
     }
     /// Where a ship that coasts from a state about `host` at `from` will be: the body that dominates there, and the state about it.
-    /// Before `from`, and beyond the ground, the state from which there is no further.
-    pub fn ahead(&self, host: BodyId, state: &State<Centred>, from: SimTime, to: SimTime) -> (BodyId, State<Centred>) {
+    /// Before `from`, and beyond the ground, the state from which there is no further. `light_m3_s2`: see [`Setting`].
+    pub fn ahead(&self, host: BodyId, state: &State<Centred>, from: SimTime, to: SimTime, light_m3_s2: f64) -> (BodyId, State<Centred>) {
         if to <= from {
             return (host, kepler::propagate(self.body(host).gm_m3_s2, state, to.since(from)));
         }
         let knot = Knot::new(host, from, state);
-        let setting = Setting { to_ground: true, ..Setting::default() };
+        let setting = Setting { to_ground: true, light_m3_s2, ..Setting::default() };
         let mut path = Path::with(&self.gravity, &self.ephemeris, knot, setting);
         while let Some(event) = path.advance(&self.gravity, &self.ephemeris, to) {
             if event.end == End::Low {

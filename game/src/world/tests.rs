@@ -6,10 +6,9 @@ use super::readout::Situation;
 use super::ship::spec::ShipSpec;
 use super::ship::spec::tests::torch;
 use super::ship::{Motion, Rigid, attitude};
-use super::system::{Air, Body, System};
+use super::system::{Body, System};
 use super::*;
 use crate::command::Spot;
-use engine::air::Medium;
 use engine::air::density::{Column, ColumnSpec};
 use engine::orbit::ephemeris::{Ephemeris, Orbit, Path as EphemerisPath};
 use engine::orbit::rotation::Spin;
@@ -22,12 +21,11 @@ const START: SimTime = SimTime::from_ticks(1_000_000);
 /// A lone smooth body that turns once in `day_s`.
 fn lone_body(gm: f64, radius_m: f64, day_s: f64, air: Option<Column>) -> Arc<System> {
     let spin = Spin { pole_dec_rad: [90.0 * DEG, 0.0], meridian_rad: [0.3, core::f64::consts::TAU * 86_400.0 / day_s], ..Spin::default() };
-    let medium = Medium { bottom_radius_m: radius_m, top_altitude_m: 1e5, ground_albedo: Vec3::splat(0.1), layers: Vec::new() };
-    let body = rock(gm, radius_m, spin, air.map(|column| Air { column, look: medium.into() }));
+    let body = rock(gm, radius_m, spin, air);
     Arc::new(System::new("test".into(), "Test".into(), vec![body], Ephemeris::default(), String::new()))
 }
 
-fn rock(gm: f64, radius_m: f64, spin: Spin, air: Option<Air>) -> Body {
+fn rock(gm: f64, radius_m: f64, spin: Spin, air: Option<Column>) -> Body {
     Body {
         key: "rock".into(),
         name: "Rock".into(),
@@ -41,6 +39,7 @@ fn rock(gm: f64, radius_m: f64, spin: Spin, air: Option<Air>) -> Body {
         albedo: Vec3::splat(0.1),
         intensity_cd: Vec3::ZERO,
         air,
+        look: None,
         relief: Some(Arc::new(Relief::smooth(radius_m, false))),
         relief_max: 1.0,
     }
@@ -91,6 +90,31 @@ fn orbiting(system: &Arc<System>, altitude_m: f64, inclination: f64, slower: f64
     let v = slower * (body.gm_m3_s2 / (body.radius_m + altitude_m)).sqrt();
     let (s, c) = libm::sincos(inclination);
     moving(system, torch(), altitude_m, DVec3::new(0.0, v * c, v * s))
+}
+
+#[test]
+fn sunlight_pushes_a_sail_as_its_closed_form_says() {
+    use engine::orbit::gravity::radiation::{SUN_AT_1_AU_W_M2, cannonball};
+    use engine::units::AU;
+    let gm = 1.327_124_4e20;
+    let mut bodies = vec![rock(gm, 6.957e8, Spin::default(), None)];
+    bodies[0].soi_radius_m = f64::INFINITY;
+    bodies[0].intensity_cd = Vec3::splat(engine::space::relative::narrow(1.28e5 * AU * AU));
+    let orbit =
+        Orbit { parent: None, gm_m3_s2: gm, path: EphemerisPath::Barycentric { epoch: START, state: State::default(), of_system: false } };
+    let system = Arc::new(System::new("one".into(), "One".into(), bodies, Ephemeris::new(vec![orbit]).unwrap(), String::new()));
+    let spec = ShipSpec { sunlight: Some(super::ship::spec::Sunlight { area_m2: 2.0e5, reflectivity: 1.8 }), ..torch() };
+    let mut world = moving(&system, spec, AU, DVec3::new(0.0, 29.8e3, 0.0));
+    let (from, began, mass_kg) = (world.rigid().state, world.time, world.ship.mass_kg());
+    world.enter_path();
+    world.warp_asked = 8;
+    idle(&mut world, 4_000);
+    // Light goes with the inverse square as gravity does: a conic about less mass.
+    let push = cannonball(DVec3::X * AU, 2.0e5 / mass_kg, 1.8, SUN_AT_1_AU_W_M2, 1.0).x * AU * AU;
+    let on = |gm: f64| engine::orbit::kepler::propagate(gm, &from, world.time.since(began)).position;
+    let moved = (world.rigid().state.position - on(gm)).length();
+    let missed = (world.rigid().state.position - on(gm - push)).length();
+    assert!(moved > 1.0e7 && missed < 2e-4 * moved, "moved {moved} m, {missed} m from the conic");
 }
 
 fn act(world: &mut World, action: Action) {

@@ -220,10 +220,10 @@ fn check_assets_takes_a_body_and_a_mod() {
         let Some(Mode::CheckAssets(args)) = Cli::parse_from(words).mode else { panic!("other words") };
         crate::mode::check_assets::run(&args)
     };
-    assert!(check(&root().join("systems/sol/moon")).unwrap().contains("17 bodies"));
+    assert!(check(&root().join("bodies/moon")).unwrap().contains("moon"));
     let broken = tempfile::tempdir().unwrap();
-    std::fs::create_dir_all(broken.path().join("systems/sol/moon")).unwrap();
-    std::fs::write(broken.path().join("systems/sol/moon/body.patch.toml"), "radius_km = -5\n").unwrap();
+    std::fs::create_dir_all(broken.path().join("bodies/moon")).unwrap();
+    std::fs::write(broken.path().join("bodies/moon/body.patch.toml"), "radius_km = -5\n").unwrap();
     let crate::mode::Error::Assets(errors) = check(broken.path()).unwrap_err() else { panic!("another error") };
     let text = errors.text();
     assert!(text.contains("body.patch.toml:1:13") && text.contains("from 0.1"), "{text}");

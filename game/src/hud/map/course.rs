@@ -39,6 +39,8 @@ struct Ask {
     to_gain: Option<glam::DVec3>,
     /// Acceleration at full throttle now, m/s², exhaust velocity, m/s, and what the tanks give, m/s.
     engine: (f64, f64, f64),
+    /// What light takes off the star's pull, m³/s².
+    light_m3_s2: f64,
     revolutions: u32,
     target: Option<BodyId>,
 }
@@ -96,6 +98,7 @@ impl Ask {
         Some(Self {
             system: world.system.clone(),
             knot: Knot::new(rigid.body, world.time, &rigid.state),
+            light_m3_s2: ship.light_m3_s2(&world.system),
             nodes: ship.nodes.clone(),
             to_gain: ship.burn.filter(|b| b.spent).map(|b| b.to_gain),
             engine,
@@ -159,7 +162,7 @@ impl Ask {
         let ends = course.span.1;
         let (Some((host, state)), Ending::Until) = (course.free.state(ends), course.free.ending) else { return course.reaches };
         let until = ends.plus_s(ends.since(course.span.0)).tick.min(self.latest());
-        let limits = Limits { steps: MOST_STEPS, ..Limits::until(until) };
+        let limits = Limits { steps: MOST_STEPS, light_m3_s2: self.light_m3_s2, ..Limits::until(until) };
         let on = predict(&self.system.gravity, &self.system.ephemeris, Knot::new(host, ends, &state), &[], &limits);
         course.reaches.max(on.end().tick)
     }
@@ -169,7 +172,8 @@ impl Ask {
     fn answer(&self, steps: usize, horizon: SimTime, free: Option<Arc<Prediction>>) -> Course {
         let begun = Instant::now();
         let places = &self.system.ephemeris;
-        let limits = |until: SimTime| Limits { steps, target: self.target, ..Limits::until(until.min(horizon)) };
+        let limits =
+            |until: SimTime| Limits { steps, target: self.target, light_m3_s2: self.light_m3_s2, ..Limits::until(until.min(horizon)) };
         let mut whole = true;
         let mut note = |path: &Prediction, until: SimTime| {
             whole &= path.ending != Ending::Steps && (path.ending == Ending::Impact || until <= horizon)

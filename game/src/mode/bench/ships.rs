@@ -3,6 +3,7 @@
 //! Ships in several places of the system coast for thirty days under every term, and under those that count for several
 //! bounds. The error is the distance from the first at the end; `method_error_m` is how far Gauss–Radau, under the plain sum of
 //! every term about one body, ends from it: what is the method's and not the choice's. CPU time is the least of several runs.
+//! Beside them ten thousand pieces of debris, a day long, on one thread and on all.
 
 use super::orbit_rows;
 use crate::cli::BenchShipsArgs;
@@ -14,13 +15,14 @@ use engine::orbit::field::Bound;
 use engine::orbit::integrate::Points;
 use engine::orbit::integrate::gauss_radau::GaussRadau;
 use engine::orbit::path::full::Full;
-use engine::orbit::path::{End, Knot, Model, Path};
+use engine::orbit::path::{End, Knot, Model, Path, swarm};
 use engine::orbit::{BodyId, State};
 use engine::space::{Centred, Position, Velocity};
 use engine::time::SimTime;
 use engine::units::{AU, DAY, DEG, KM};
 use glam::DVec3;
 use serde::Serialize;
+use std::time::Instant;
 
 /// Periapsis distance, eccentricity and inclination about a body of the system.
 const SHIPS: [(&str, &str, f64, f64, f64); 8] = [
@@ -53,6 +55,27 @@ struct Row {
     cpu_s: f64,
 }
 
+/// Debris about the Earth.
+#[derive(Clone, Debug, Serialize)]
+struct Swarm {
+    particles: usize,
+    days: f64,
+    /// That came down to the height from which on a ship is flown.
+    decayed: usize,
+    threads: usize,
+    wall_s: f64,
+    wall_on_one_thread_s: f64,
+    /// Whether both runs gave the same bits.
+    same_bits: bool,
+}
+
+/// What is written.
+#[derive(Clone, Debug, Serialize)]
+struct Report {
+    terms: Vec<Row>,
+    swarm: Option<Swarm>,
+}
+
 /// Measures and writes.
 ///
 /// # Errors
@@ -65,7 +88,42 @@ pub fn run(args: &BenchShipsArgs) -> Result<(), Error> {
             rows.extend(measure(&system, host, ship));
         }
     }
-    Ok(orbit_rows::write(&rows, args.json.as_deref())?)
+    let swarm = system.find("earth").map(|host| debris(&system, host));
+    Ok(orbit_rows::write(&Report { terms: rows, swarm }, args.json.as_deref())?)
+}
+
+/// A shell that broke up in low orbit: ten thousand pieces thrown every way at up to 200 m/s.
+fn debris(system: &System, host: BodyId) -> Swarm {
+    const PARTICLES: u32 = 10_000;
+    let epoch = SimTime::from_jd_tdb(2_461_284.5);
+    let until = epoch.plus(60 * 86_400);
+    let radius = 7_000.0 * KM;
+    let speed = (system.body(host).gm_m3_s2 / radius).sqrt();
+    let piece = |i: u32| {
+        // A Fibonacci spiral of directions; speeds by the golden ratio's other multiples.
+        let z = 1.0 - (2.0 * f64::from(i) + 1.0) / f64::from(PARTICLES);
+        let (s, c) = libm::sincos(2.399_963_229_728_653 * f64::from(i));
+        let kick = 200.0 * libm::fmod(f64::from(i) * 0.754_877_666_246_693, 1.0);
+        let ring = (1.0 - z * z).sqrt();
+        let velocity = DVec3::new(0.0, speed * 0.8, speed * 0.6) + DVec3::new(ring * c, ring * s, z) * kick;
+        Knot::new(host, epoch, &State { position: Position::xyz(radius, 0.0, 0.0), velocity: Velocity::new(velocity) })
+    };
+    let pieces: Vec<Knot> = (0..PARTICLES).map(piece).collect();
+    let run = || {
+        let begun = Instant::now();
+        (swarm::propagate(&system.gravity, &system.ephemeris, &pieces, until, 100_000), begun.elapsed().as_secs_f64())
+    };
+    let (all, wall_s) = run();
+    let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().map_or_else(|_| run(), |pool| pool.install(run));
+    Swarm {
+        particles: pieces.len(),
+        days: until.since(epoch) / DAY,
+        decayed: all.iter().filter(|(_, end)| *end == End::Low).count(),
+        threads: rayon::current_num_threads(),
+        wall_s,
+        wall_on_one_thread_s: one.1,
+        same_bits: all == one.0,
+    }
 }
 
 /// Where a coast led, in how many steps, with how many third bodies in all, in how much time.

@@ -72,7 +72,7 @@ pub fn start(system: &System, event: &Event, ship: &str, seat: Seat) -> Option<S
             Place::Ground { body: key.clone(), lat_deg: spot_lat, lon_deg: spot_lon, heading_deg }
         }
         Seat::Orbit => {
-            let altitude_m = (HEIGHT * body.radius_m).max(1.3 * body.air.as_ref().map_or(0.0, |a| a.column.top_m));
+            let altitude_m = (HEIGHT * body.radius_m).max(1.3 * body.air.as_ref().map_or(0.0, |a| a.top_m));
             let r = body.radius_m + altitude_m;
             // Back along an eastward circle by what is flown until then, over ground that turns the same way.
             let rate = (body.gm_m3_s2 / (r * r * r)).sqrt();

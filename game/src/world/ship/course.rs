@@ -14,14 +14,14 @@ pub struct Course<'a> {
 }
 
 impl<'a> Course<'a> {
-    /// From a state about `body` at `time`.
+    /// From a state about `body` at `time`, for hours at most: the push of light is left out.
     pub fn new(system: &'a System, time: SimTime, body: BodyId, state: &State<Centred>) -> Self {
-        Self::of(system, Knot::new(body, time, state))
+        Self::of(system, Knot::new(body, time, state), 0.0)
     }
 
-    /// From a knot of a path.
-    pub fn of(system: &'a System, knot: Knot) -> Self {
-        let setting = Setting { to_ground: true, ..Setting::default() };
+    /// From a knot of a path, with what light takes off the star's pull, m³/s² ([`Setting`]).
+    pub fn of(system: &'a System, knot: Knot, light_m3_s2: f64) -> Self {
+        let setting = Setting { to_ground: true, light_m3_s2, ..Setting::default() };
         Self { system, path: Path::with(&system.gravity, &system.ephemeris, knot, setting), body: knot.host }
     }
 

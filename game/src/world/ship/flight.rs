@@ -151,7 +151,7 @@ fn translate(ship: &Ship, local: &Local, rigid: &Rigid, turn: &Turn, push: thrus
     let far = far(local);
     let hull: DQuat = turn.mid_attitude;
     let thrust_force = hull * push.force;
-    let column = local.body.air.as_ref().map(|a| &a.column);
+    let column = local.body.air.as_ref();
     let acceleration = |t: f64, r: DVec3, v: DVec3| {
         let mut force = thrust_force;
         if let Some(column) = column {

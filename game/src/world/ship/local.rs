@@ -59,7 +59,7 @@ impl<'a> Local<'a> {
             spin,
             v_surface: v - spin.cross(r),
             icrf_from_fixed,
-            air: body.air.as_ref().map(|a| a.column.at(altitude_m)).unwrap_or_default(),
+            air: body.air.as_ref().map(|a| a.at(altitude_m)).unwrap_or_default(),
         }
     }
     /// Unit direction in the body's turning axes.
@@ -99,5 +99,5 @@ pub fn ground_m(body: &Body, direction_fixed: DVec3) -> f64 {
 
 /// Altitude above which air does not act, m; 0 for an airless body.
 pub fn air_top_m(body: &Body) -> f64 {
-    body.air.as_ref().map_or(0.0, |a| a.column.top_m)
+    body.air.as_ref().map_or(0.0, |a| a.top_m)
 }

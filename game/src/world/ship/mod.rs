@@ -16,6 +16,7 @@ pub mod spec;
 pub mod thrust;
 pub mod warp;
 
+use super::system::System;
 use crate::command::{Guidance, Hold, Node};
 use engine::orbit::path::Path;
 use engine::orbit::{BodyId, State};
@@ -175,6 +176,10 @@ impl Ship {
     /// Mass now, kg.
     pub fn mass_kg(&self) -> f64 {
         self.spec.mass.dry_kg + self.propellant_kg
+    }
+    /// What the star's light takes off its pull on the ship now, m³/s².
+    pub fn light_m3_s2(&self, system: &System) -> f64 {
+        self.spec.light_m3_s2(self.mass_kg(), system)
     }
     /// Moments of inertia now, hull axes, kg·m².
     pub fn inertia_kg_m2(&self) -> DVec3 {

@@ -2,6 +2,7 @@
 //!
 //! Plain data and range checks only: the file is read and its errors are shown by [`crate::assets`].
 
+use crate::world::system::System;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -31,6 +32,9 @@ pub struct ShipSpec {
     pub gear: Gear,
     /// What hull and crew bear.
     pub limits: Limits,
+    /// How sunlight pushes it; none: not at all.
+    #[serde(default)]
+    pub sunlight: Option<Sunlight>,
 }
 
 /// Masses and inertia.
@@ -149,10 +153,26 @@ pub struct Limits {
     pub hull_impact_m_s: f64,
 }
 
+/// How sunlight pushes the ship while it coasts: as a sphere, whatever its attitude and whether or not a world stands before the
+/// star (stated simplifications).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Sunlight {
+    /// Cross section, m².
+    pub area_m2: f64,
+    /// Radiation pressure coefficient: 1 black, 2 a mirror that faces the star.
+    pub reflectivity: f64,
+}
+
 impl ShipSpec {
     /// Mass with full tanks, kg.
     pub fn full_mass_kg(&self) -> f64 {
         self.mass.dry_kg + self.mass.propellant_kg
+    }
+    /// What the star's light takes off its pull on the ship of this mass, m³/s²: C_R (A/m) times the force of the light on a
+    /// square metre times the square of the distance (see [`engine::orbit::gravity::radiation`]).
+    pub fn light_m3_s2(&self, mass_kg: f64, system: &System) -> f64 {
+        self.sunlight.map_or(0.0, |s| s.reflectivity * s.area_m2 / mass_kg * system.light_n)
     }
     /// Height of the centre of mass above level ground with the gear down and unloaded, m.
     pub fn standing_height_m(&self) -> f64 {
@@ -204,6 +224,12 @@ impl ShipSpec {
         positive("limits.load_g", self.limits.load_g, false);
         positive("limits.gear_impact_m_s", self.limits.gear_impact_m_s, false);
         positive("limits.hull_impact_m_s", self.limits.hull_impact_m_s, false);
+        if let Some(light) = self.sunlight {
+            positive("sunlight.area_m2", light.area_m2, true);
+            if !(0.0..=2.0).contains(&light.reflectivity) {
+                faults.push(("sunlight.reflectivity", format!("{} is out of range: expected 0 … 2", light.reflectivity)));
+            }
+        }
         if self.gear.feet_m.len() < 3 || self.gear.feet_m.iter().any(|f| !f.is_finite() || f.y >= 0.0) {
             faults.push(("gear.feet_m", "expected at least three feet, each below the centre of mass (negative y)".to_owned()));
         }

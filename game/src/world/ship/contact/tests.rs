@@ -29,6 +29,7 @@ fn rock(ground: bool) -> Arc<System> {
         albedo: Vec3::splat(0.1),
         intensity_cd: Vec3::ZERO,
         air: None,
+        look: None,
         relief: ground.then(|| Arc::new(relief)),
         relief_max: 1.0,
     };

@@ -102,7 +102,7 @@ impl Burn {
             return None;
         }
         let state = State::<Centred> { position: Position::new(local.r), velocity: Velocity::new(local.v) };
-        let (_, there) = local.system.ahead(local.id, &state, local.time, node.at);
+        let (_, there) = local.system.ahead(local.id, &state, local.time, node.at, ship.light_m3_s2(local.system));
         let to_gain = node.dv(&there);
         let turn = ship.burn_start(node).plus(-ticks(lead_s(ship))).max(local.time.plus(1));
         Some(Self { to_gain, aim: to_gain.normalize_or(axes(&there)[0]), spent: false, phase: Stage::Wait { turn } })

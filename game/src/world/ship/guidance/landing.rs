@@ -244,7 +244,7 @@ impl Landing {
         let gravity = local.gravity().length();
         let circular = (gravity * local.r.length()).sqrt();
         let aero = &ship.spec.aero;
-        let density = local.body.air.as_ref().map_or(0.0, |a| a.column.at(self.gate_m).density_kg_m3);
+        let density = local.body.air.as_ref().map_or(0.0, |a| a.at(self.gate_m).density_kg_m3);
         // Drag belly first is to stay under a third of the weight.
         let drag_limit = if density > 0.0 {
             (0.6 * ship.mass_kg() * gravity / (density * aero.reference_area_m2 * aero.belly_drag)).sqrt()

@@ -209,13 +209,13 @@ pub fn lead_s(ship: &Ship) -> f64 {
 /// Lowest altitude above which the air is thinner than `density`, m; 0 without air.
 pub fn thin_above_m(body: &Body, density: f64) -> f64 {
     let Some(air) = &body.air else { return 0.0 };
-    let (mut low, mut high) = (0.0, air.column.top_m);
-    if air.column.at(0.0).density_kg_m3 < density {
+    let (mut low, mut high) = (0.0, air.top_m);
+    if air.at(0.0).density_kg_m3 < density {
         return 0.0;
     }
     for _ in 0..40 {
         let middle = 0.5 * (low + high);
-        if air.column.at(middle).density_kg_m3 < density {
+        if air.at(middle).density_kg_m3 < density {
             high = middle;
         } else {
             low = middle;

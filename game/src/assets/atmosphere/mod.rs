@@ -1,0 +1,137 @@
+//! A body's air, `atmosphere.toml`: what one sees at the top, what drags in `[physics]`, each described on its own.
+//!
+//! The keys are data ([`keys`]); a file that holds to them is built into the engine's types here and by [`layers`], whose range checks'
+//! messages find their line. An air that can be built and is hardly meant is told by [`plausible`].
+
+pub mod keys;
+pub mod layers;
+pub mod optics;
+pub mod plausible;
+
+use super::fields;
+use super::reader::{ANY, Reader};
+use super::tree::{Data, Node};
+use engine::air::density::Lapse;
+use engine::air::spectral::SpectralMedium;
+use engine::air::{Air, Column, ColumnSpec, Model, RangeError};
+use engine::light::spectrum::Starlight;
+use engine::units::NM;
+use optics::Channels;
+
+/// Air as its file describes it.
+#[derive(Clone, Debug, Default)]
+pub struct AirSpec {
+    /// What drags, if anything does.
+    pub column: Option<Column>,
+    /// What one sees, if anything.
+    pub look: Option<Air>,
+    /// What `look` was drawn from.
+    pub by_wavelength: Option<SpectralMedium>,
+}
+
+/// What a body lends to its air.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Datum {
+    /// Radius of the datum, m.
+    pub radius_m: f64,
+    /// Gravity there, m/s².
+    pub gravity_m_s2: f64,
+}
+
+impl Datum {
+    /// Of a body with this GM (m³/s²) and radius (m). One whose numbers are at fault gets no second fault for its air: they count as
+    /// Earth's.
+    pub fn new(gm_m3_s2: f64, radius_m: f64) -> Self {
+        let radius_m = if radius_m.is_finite() { radius_m } else { 6.371e6 };
+        let gravity_m_s2 = if gm_m3_s2.is_finite() { gm_m3_s2 / (radius_m * radius_m) } else { 9.8 };
+        Self { radius_m, gravity_m_s2 }
+    }
+}
+
+/// Reads the file: faults and warnings go to the reader. `star` is the light under which its colours are found.
+pub fn read_air(r: &Reader<'_>, datum: Datum, star: &Starlight) -> AirSpec {
+    let before = r.errors();
+    fields::check(r.again(), keys::ATMOSPHERE);
+    if r.errors() > before {
+        return AirSpec::default();
+    }
+    let column = r.maybe_table("physics").and_then(|t| tell(&t, "", Column::new(&column_of(&t, datum))));
+    let (look, by_wavelength) = look_of(r, datum, star).unzip();
+    if let Some(look) = look.as_ref().filter(|_| r.errors() == before) {
+        plausible::suspicions(r.node, look, column.as_ref(), datum.gravity_m_s2).into_iter().for_each(|s| r.fault(s));
+    }
+    AirSpec { column, look, by_wavelength }
+}
+
+/// Turns range errors into faults; `table` is where their fields are, with a point behind it.
+fn tell<T>(r: &Reader<'_>, table: &str, built: Result<T, Vec<RangeError>>) -> Option<T> {
+    built
+        .map_err(|errors| {
+            for e in errors.iter().filter(|e| !e.found.is_nan()) {
+                let field = format!("{table}{}", e.field);
+                r.wrong(&field, format!("`{field}` = {} is out of range: expected {}", e.found, e.expected));
+            }
+        })
+        .ok()
+}
+
+/// `[physics]`, which holds to its keys.
+fn column_of(r: &Reader<'_>, datum: Datum) -> ColumnSpec {
+    let number = |key| r.number(key, ANY);
+    let drag_top_m = number("drag_top_m");
+    if r.node.get("kind").and_then(|e| e.value.text()) == Some("us76") {
+        return ColumnSpec::Us76 { drag_top_m };
+    }
+    let lapse = |t: Reader<'_>| Lapse { to_altitude_m: t.number("to_altitude_m", ANY), k_per_m: t.number("k_per_m", ANY) };
+    ColumnSpec::Hydrostatic {
+        drag_top_m,
+        radius_m: datum.radius_m,
+        gravity_m_s2: datum.gravity_m_s2,
+        temperature_k: number("temperature_k"),
+        pressure_pa: number("pressure_pa"),
+        molar_mass_kg_mol: number("molar_mass_kg_mol"),
+        heat_capacity_ratio: number("heat_capacity_ratio"),
+        lapse: r.tables("lapse").into_iter().map(lapse).collect(),
+    }
+}
+
+/// The look. What each model cannot do without is asked for here.
+fn look_of(r: &Reader<'_>, datum: Datum, star: &Starlight) -> Option<(Air, SpectralMedium)> {
+    let before = r.errors();
+    let word = r.node.get("model").and_then(|e| e.value.text()).unwrap_or("physical");
+    if word == "none" {
+        return None;
+    }
+    let top_altitude_m = r.number("top_altitude_m", ANY);
+    let lit_by_layers = matches!(word, "physical" | "view_table");
+    let ground_albedo = if lit_by_layers || r.has("ground_albedo") { r.numbers("ground_albedo", ANY) } else { [0.0; 3] };
+    if lit_by_layers {
+        r.needed("layers", "a list of tables [[layers]], or `layers = []` for a vacuum");
+    }
+    let wavelengths_m = r.has("wavelengths_nm").then(|| r.numbers("wavelengths_nm", ANY).map(|nm| nm * NM));
+    let wavelengths_m = wavelengths_m.unwrap_or(SpectralMedium::WAVELENGTHS_M);
+    let layers = layers::read(r, datum, Channels { wavelengths_m });
+    let model = model_of(r, word);
+    let by_wavelength = SpectralMedium { bottom_radius_m: datum.radius_m, top_altitude_m, ground_albedo, wavelengths_m, layers };
+    let spectral = word == "physical" && r.node.get("spectrum").and_then(|e| e.value.text()) == Some("spectral");
+    let drawn = tell(r, "", by_wavelength.draw(spectral, star));
+    if r.errors() > before {
+        return None;
+    }
+    let (medium, bands) = drawn?;
+    Some((Air { medium, bands, model: model? }, by_wavelength))
+}
+
+/// The model that a word names, with the settings in the table of that name.
+fn model_of(r: &Reader<'_>, word: &str) -> Option<Model> {
+    let table = r.node.get(word).map(|e| &e.value).filter(|n| matches!(n.data, Data::Table(_)));
+    let mut settings = table.map_or_else(|| serde_json::json!({}), Node::json);
+    settings["model"] = word.into();
+    match serde_json::from_value::<Model>(settings) {
+        Ok(model) => Some(model),
+        Err(e) => {
+            r.wrong(word, format!("[{word}]: {e}: expected the settings of the model"));
+            None
+        }
+    }
+}

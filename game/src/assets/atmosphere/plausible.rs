@@ -1,0 +1,115 @@
+//! Whether an air can be what was meant: nothing here is an error, since a game may have any air that it likes. Told as warnings, at the
+//! line that is suspected, with the figure that is odd and what it would be on a world like ours.
+
+use crate::assets::fault::Fault;
+use crate::assets::tree::Node;
+use engine::air::{Air, Column, Layer, Phase};
+use engine::space::relative::narrow;
+use glam::DVec3;
+
+/// Vertical optical depth beyond which even the sun is nowhere to be seen from the ground: Venus's clouds have 30.
+const ABSURD_DEPTH: f64 = 100.0;
+/// Vertical optical depth that a layer may well have: a thousand times as much is a value per kilometre.
+const THICK_DEPTH: f64 = 5.0;
+/// Optical depth of a grazing ray at the top beyond which the air visibly ends there.
+const EDGE_DEPTH: f64 = 0.01;
+/// Factor between a molecular layer's scale height and that of the gas that drags.
+const SCALE_FACTOR: f64 = 1.5;
+/// Steps of the sums over altitude.
+const STEPS: u32 = 400;
+
+/// Suspicions about an air. `tree` is its file, for the places; `gravity_m_s2` that at the datum.
+pub fn suspicions(tree: &Node, look: &Air, column: Option<&Column>, gravity_m_s2: f64) -> Vec<Fault> {
+    let mut found = Vec::new();
+    let mut tell = |place: &str, message: String, help: &str| {
+        found.push(Fault::warning(&tree.place_of(place), message).help(Some(help.to_owned())));
+    };
+    let medium = &look.medium;
+    let mut total = DVec3::ZERO;
+    for (i, layer) in medium.layers.iter().enumerate() {
+        let column_m = column_m(layer, medium.top_altitude_m);
+        let extinction = (layer.scattering_per_m + layer.absorption_per_m).as_dvec3();
+        let depth = extinction * column_m;
+        let strongest = if depth_of(layer.absorption_per_m) > depth_of(layer.scattering_per_m) { "absorption" } else { "scattering" };
+        let place = format!("layers[{i}].{strongest}_per_m");
+        if (ABSURD_DEPTH..1000.0 * THICK_DEPTH).contains(&depth.max_element()) {
+            tell(
+                &place,
+                format!("vertical optical depth {:.3} of this layer: the coefficients look like values per kilometre", depth.max_element()),
+                "expected m⁻¹: a thousandth of a value in km⁻¹",
+            );
+        } else {
+            total += depth;
+        }
+        hard_edge(layer, i, medium.bottom_radius_m, medium.top_altitude_m, &mut tell);
+        let s = layer.scattering_per_m;
+        if matches!(layer.phase, Phase::Rayleigh | Phase::ElekRayleigh) && s.x > 1.05 * s.z && s.z > 0.0 {
+            tell(
+                &format!("layers[{i}].scattering_per_m"),
+                "molecules that scatter more red than blue".to_owned(),
+                "the order of the channels is red, green, blue; molecules scatter as the wavelength to the power of −4",
+            );
+        }
+        if let Some(column) = column {
+            wrong_scale(layer, i, column, gravity_m_s2, &mut tell);
+        }
+    }
+    if total.max_element() > ABSURD_DEPTH {
+        tell(
+            "layers",
+            format!("vertical optical depth {:.3} of all layers: no light comes through", total.max_element()),
+            "Venus's clouds have about 30",
+        );
+    }
+    found
+}
+
+fn depth_of(v: glam::Vec3) -> f64 {
+    f64::from(v.max_element())
+}
+
+/// Height of air at density 1 that holds a layer's matter above the datum, m.
+pub fn column_m(layer: &Layer, top_m: f64) -> f64 {
+    let step = top_m / f64::from(STEPS);
+    (0..STEPS).map(|i| layer.profile.density((f64::from(i) + 0.5) * step)).sum::<f64>() * step
+}
+
+/// Air that is not negligible at the top ends there in a visible edge.
+fn hard_edge(layer: &Layer, i: usize, radius_m: f64, top_m: f64, tell: &mut impl FnMut(&str, String, &str)) {
+    let density = layer.profile.density(top_m * (1.0 - 1e-9));
+    let extinction = depth_of(layer.scattering_per_m + layer.absorption_per_m);
+    // A ray that grazes the shell one hundredth below the top.
+    let way = 2.0 * (2.0 * (radius_m + top_m) * 0.01 * top_m).sqrt();
+    let depth = extinction * density * way;
+    if depth > EDGE_DEPTH {
+        tell(
+            "top_altitude_m",
+            format!(
+                "a hard edge: layer {i} still has {:.2} % of its density at the top (grazing optical depth {depth:.2})",
+                100.0 * density
+            ),
+            "raise the top, or lower the scale height: an exponential layer wants a top of about 12 scale heights",
+        );
+    }
+}
+
+/// A molecular layer that does not fall off as the gas that drags does: p, ρ and T would not belong together.
+fn wrong_scale(layer: &Layer, i: usize, column: &Column, gravity_m_s2: f64, tell: &mut impl FnMut(&str, String, &str)) {
+    let engine::air::Profile::Exponential { scale_height_m } = layer.profile else { return };
+    let low = column.at(0.0);
+    if !matches!(layer.phase, Phase::Rayleigh | Phase::ElekRayleigh) || low.density_kg_m3 <= 0.0 || gravity_m_s2 <= 0.0 {
+        return;
+    }
+    let hydrostatic = low.pressure_pa / (low.density_kg_m3 * gravity_m_s2);
+    let ratio = f64::from(scale_height_m) / hydrostatic;
+    if !(1.0 / SCALE_FACTOR..=SCALE_FACTOR).contains(&ratio) {
+        tell(
+            &format!("layers[{i}].profile.scale_height_m"),
+            format!(
+                "scale height {scale_height_m} m, but the gas of [physics] has p/(ρ g) = {:.0} m at the datum: p ≠ ρ R T / M for one of them",
+                narrow(hydrostatic)
+            ),
+            "molecules and the gas that drags are one: give both the same temperature and molar mass",
+        );
+    }
+}
