@@ -4,7 +4,8 @@
 // A model is one pure function in its own file of shaders/lib, `… -> AirLight`, asked with a `SkyView`; shaders/pass/sky_<model>.wgsl
 // binds it twice: `fragment` for the picture, `probe` for given rays. Rust side: engine/src/render/pass/sky/mod.rs and sky_probe.rs.
 // Group 2 of such a pass: @binding(0) opaque, (1) depth, (2) var<uniform> sky: Sky; of its probe: (2) sky, (3) given, (4) found.
-// Group 3 is the model's own.
+// Group 3 is the model's own. The probe too finds its air by the body's slot, not by a literal: Mesa 22.3's software driver builds uniforms at
+// fixed places into the code where branches depend on them, and crashes on these.
 
 #include "lib/air_path.wgsl"
 #include "lib/frame.wgsl"
@@ -33,7 +34,7 @@ struct SkyView {
 // A ray to probe, and what it brings.
 struct ProbeRay {
     up: vec4<f32>,   // unit zenith of the eye, its altitude, m
-    ray: vec4<f32>,  // unit direction of sight, 0
+    ray: vec4<f32>,  // unit direction of sight, distance to a surface seen (0: none, the datum ends the ray)
     sun: vec4<f32>,  // unit direction to the sun, its angular radius, rad
 }
 struct ProbeLight {
@@ -96,7 +97,8 @@ fn sky_probe_body(body: Body, asked: ProbeRay) -> Body {
     return there;
 }
 fn sky_probe_view(asked: ProbeRay) -> SkyView {
-    return SkyView(asked.ray.xyz, 1e30, true, 0.0);
+    let seen = asked.ray.w > 0.0;
+    return SkyView(asked.ray.xyz, select(1e30, asked.ray.w, seen), !seen, 0.0);
 }
 
 // Light and transmittance laid over a stored colour; `sum` is over `rays` rays.

@@ -114,7 +114,7 @@ fn rounded(v: DVec3) -> DVec3 {
 }
 
 /// Ray `i` through a planet: from the ground, from within, from space to the limb and to the ground, under suns from 0 to 97°.
-fn ray(planet: &Planet, i: u32) -> (String, Ray) {
+pub fn ray(planet: &Planet, i: u32) -> (String, Ray) {
     let [a, b, c, d] = [2, 3, 5, 7].map(|base| radical_inverse(i + 1, base));
     let (bottom, top) = (planet.medium.bottom_radius_m, planet.medium.top_altitude_m);
     let sun_zenith = match i % 4 {

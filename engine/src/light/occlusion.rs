@@ -86,6 +86,28 @@ pub fn visible_above_limb(sun_rad: f64, elevation_rad: f64) -> f64 {
     (1.0 - segment(a) / PI).clamp(0.0, 1.0)
 }
 
+/// Mean of [`visible_above_limb`] while the elevation goes evenly from one value to another.
+pub fn visible_between(sun_rad: f64, from_rad: f64, to_rad: f64) -> f64 {
+    let (a, b) = (from_rad / sun_rad, to_rad / sun_rad);
+    if a.min(b) >= 1.0 {
+        return 1.0;
+    }
+    if a.max(b) <= -1.0 {
+        return 0.0;
+    }
+    if (b - a).abs() < 1e-4 {
+        return visible_above_limb(sun_rad, 0.5 * (from_rad + to_rad));
+    }
+    ((visible_integral(b) - visible_integral(a)) / (b - a)).clamp(0.0, 1.0)
+}
+
+/// Antiderivative of the visible fraction by the elevation in units of the sun's radius.
+fn visible_integral(x: f64) -> f64 {
+    let c = x.clamp(-1.0, 1.0);
+    let root = (1.0 - c * c).sqrt();
+    (x - 1.0).max(0.0) + 0.5 * c + (c * libm::asin(c) + root - root * root * root / 3.0) / PI
+}
+
 /// Visible fraction of the sun's disc behind several discs, 0 … 1: the product of the single fractions. This is exact when
 /// at most one of them stands before the sun, and lies between the two true extremes (apart, or one behind the other) when two do.
 pub fn visible(sun: Disc, occluders: &[Disc]) -> f64 {
@@ -110,6 +132,17 @@ mod tests {
             covered += (half.min(separation + other) - (-half).max(separation - other)).max(0.0);
         }
         1.0 - covered * (2.0 * sun / f64::from(n)) / (PI * sun * sun)
+    }
+
+    #[test]
+    fn the_mean_between_two_elevations_is_the_integral() {
+        for (a, b) in [(-3.0, 2.0), (-0.9, -0.2), (0.3, 0.300_01), (0.5, 9.0), (1.0, -1.0)] {
+            let n = 20_000;
+            let at = |i: i32| visible_above_limb(SUN, SUN * (a + (b - a) * (f64::from(i) + 0.5) / f64::from(n)));
+            let truth = (0..n).map(at).sum::<f64>() / f64::from(n);
+            assert!((visible_between(SUN, SUN * a, SUN * b) - truth).abs() < 1e-6, "{a}, {b}");
+        }
+        assert_eq!((visible_between(SUN, SUN, 9.0), visible_between(SUN, -9.0, -SUN)), (1.0, 0.0));
     }
 
     #[test]

@@ -2,6 +2,8 @@
 
 use super::gpu_data::vec4;
 use crate::air::model::orders::SunMap;
+use crate::air::model::view_space::Spacing;
+use crate::air::model::view_table::{AlphaColour, Split, ViewTable};
 use crate::air::{Classes, Layer, Medium, Phase, Profile};
 use crate::space::relative::{narrow, narrow3};
 use bytemuck::{Pod, Zeroable};
@@ -152,4 +154,38 @@ pub type SkySettings = [[f32; 4]; SKY_SETTINGS];
 pub struct SkyUniform {
     pub ids: [u32; 4],
     pub settings: SkySettings,
+}
+
+/// `ViewTable` of `shaders/lib/view_table.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[allow(missing_docs)]
+pub struct ViewTableUniform {
+    pub rgb: [f32; 4],
+    pub alpha: [f32; 4],
+    pub rgb_phase: [f32; 4],
+    pub alpha_phase: [f32; 4],
+    pub tint: [f32; 4],
+    pub inverse: [f32; 4],
+    pub counts: [u32; 4],
+}
+
+impl ViewTableUniform {
+    /// From the settings and what of the medium goes where.
+    pub fn new(settings: &ViewTable, split: &Split) -> Self {
+        let flag = |on: bool| if on { 1.0 } else { 0.0 };
+        let mut all = Self::zeroed();
+        let first = split.in_rgb.iter().position(|r| *r);
+        for (i, in_rgb) in split.in_rgb.iter().enumerate().take(Classes::MAX) {
+            all.rgb[i] = flag(*in_rgb);
+            all.alpha[i] = flag(!in_rgb);
+            all.rgb_phase[i] = flag(first == Some(i));
+            all.alpha_phase[i] = narrow(split.alpha_weights.get(i).copied().unwrap_or(0.0));
+        }
+        all.tint = vec4(narrow3(split.alpha_tint()), flag(settings.alpha_colour == AlphaColour::Proportional));
+        let [r, g, b] = split.rgb_depth.to_array().map(|d| if d > 0.0 { narrow(1.0 / d) } else { 0.0 });
+        all.inverse = [r, g, b, 0.0];
+        all.counts = [settings.samples, settings.depth_samples, settings.ambient_samples, u32::from(settings.spacing == Spacing::Graded)];
+        all
+    }
 }

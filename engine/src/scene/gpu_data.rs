@@ -6,7 +6,8 @@
 //! air are in `gpu_terrain.rs` and `gpu_air.rs`.
 
 pub use super::gpu_air::{
-    AirUniform, AirsUniform, MAX_AIRS, MEDIA_COLUMNS, MEDIA_ROWS, PhasesUniform, SKY_SETTINGS, SKY_SINGLE, SkySettings, SkyUniform, media_rows,
+    AirUniform, AirsUniform, MAX_AIRS, MEDIA_COLUMNS, MEDIA_ROWS, PhasesUniform, SKY_SETTINGS, SKY_SINGLE, SkySettings, SkyUniform,
+    ViewTableUniform, media_rows,
 };
 use super::{Body, Camera, Ship, Snapshot, Surface};
 use bytemuck::{Pod, Zeroable};

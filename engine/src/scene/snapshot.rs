@@ -51,6 +51,8 @@ pub enum Surface {
     Smooth,
     /// Terrain tiles chosen for this camera.
     Tiles(TileSet),
+    /// None at all: a bank of fog or a nebula, of which only the shell of its air is seen.
+    Nothing,
 }
 
 /// A planet or moon.

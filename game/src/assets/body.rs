@@ -5,6 +5,7 @@
 use super::fault::At;
 use super::reader::{ANY, POSITIVE, Reader};
 use super::relief::read_relief;
+use engine::light::spectrum::Starlight;
 use engine::orbit::State;
 use engine::orbit::eclipse::Shape;
 use engine::orbit::ephemeris::{MeanOrbit, Path};
@@ -40,6 +41,8 @@ pub struct BodySpec {
     pub albedo: Vec3,
     /// cd per linear sRGB channel; zero for all but stars.
     pub intensity_cd: Vec3,
+    /// Spectrum of its light; `None` for all but stars.
+    pub starlight: Option<Starlight>,
     /// Pole and meridian.
     pub spin: Spin,
     /// What throws and catches shadows.
@@ -68,18 +71,13 @@ pub fn read_body(key: &str, r: Reader<'_>) -> BodySpec {
     let gm_m3_s2 = r.number("gm_km3_s2", POSITIVE) * KM3_S2;
     let radius_m = r.number("radius_km", 0.1..=1e7) * KM;
     let albedo = vec3(r.numbers("albedo", 0.0..=1.0));
-    let star = r.maybe_table("star").map(|s| {
-        let lux = s.number("illuminance_at_1_au_lx", POSITIVE);
-        let colour = vec3(s.numbers("colour", 0.0..=100.0));
-        s.finish();
-        colour * engine::space::relative::narrow(lux * AU * AU)
-    });
+    let (intensity_cd, starlight) = r.maybe_table("star").map(read_star).unzip();
     let spin = r.table("rotation").map(read_spin).unwrap_or_default();
     let shape = r.maybe_table("shape").map_or(Shape::sphere(radius_m), |t| read_shape(t, radius_m));
     let gravity = r.maybe_table("gravity").map(|t| read_gravity(t, &spin, gm_m3_s2));
     let path = r.table("orbit").map_or_else(nowhere, read_path);
     let relief = r.maybe_table("relief").map(read_relief);
-    if parent.is_some() && star.is_some() {
+    if parent.is_some() && intensity_cd.is_some() {
         r.wrong("star", "`star`: expected only in the body without a `parent`");
     }
     let spec = BodySpec {
@@ -89,7 +87,8 @@ pub fn read_body(key: &str, r: Reader<'_>) -> BodySpec {
         gm_m3_s2,
         radius_m,
         albedo,
-        intensity_cd: star.unwrap_or(Vec3::ZERO),
+        intensity_cd: intensity_cd.unwrap_or(Vec3::ZERO),
+        starlight,
         family_gm_m3_s2: gravity.as_ref().and_then(|g| g.1),
         figure: gravity.map(|g| g.0),
         spin,
@@ -100,6 +99,25 @@ pub fn read_body(key: &str, r: Reader<'_>) -> BodySpec {
     };
     r.finish();
     spec
+}
+
+/// Intensity (cd per channel) and spectrum of a star: a black body's, its own, or the Sun's; its colour by that, unless it is given.
+fn read_star(s: Reader<'_>) -> (Vec3, Starlight) {
+    let lux = s.number("illuminance_at_1_au_lx", POSITIVE);
+    let starlight = if let Some(temperature_k) = s.maybe_number("temperature_k", 500.0..=1e6) {
+        Starlight::BlackBody(temperature_k)
+    } else if s.has("wavelengths_nm") || s.has("irradiance") {
+        let (wavelengths_nm, irradiance) = (s.series("wavelengths_nm", 1.0..=1e5), s.series("irradiance", 0.0..=1e30));
+        if wavelengths_nm.len() != irradiance.len() || wavelengths_nm.windows(2).any(|w| w[1] <= w[0]) {
+            s.wrong("wavelengths_nm", "[star]: expected as many `irradiance` as `wavelengths_nm`, and these rising");
+        }
+        Starlight::Table(wavelengths_nm.into_iter().zip(irradiance).collect())
+    } else {
+        Starlight::Sun
+    };
+    let colour = if s.has("colour") { vec3(s.numbers("colour", 0.0..=100.0)) } else { starlight.colour() };
+    s.finish();
+    (colour * engine::space::relative::narrow(lux * AU * AU), starlight)
 }
 
 fn nowhere() -> Path {

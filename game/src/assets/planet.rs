@@ -18,6 +18,7 @@ use super::overlay::read_text;
 use super::reader::{Faults, POSITIVE, Reader};
 use super::tree::{Data, Entry, Node, parse};
 use engine::air::Air;
+use engine::light::spectrum::Starlight;
 use engine::units::{DEG, KM};
 use std::path::Path;
 
@@ -101,9 +102,9 @@ fn read(r: Reader<'_>, elsewhere: Option<&Node>, faults: &Faults) -> Option<Plan
     let air = match elsewhere {
         Some(node) => {
             r.text("atmosphere");
-            read_air(&Reader::new(node, faults), datum)
+            read_air(&Reader::new(node, faults), datum, &Starlight::default())
         }
-        None => r.table("atmosphere").map(|t| read_air(&t, datum)).unwrap_or_default(),
+        None => r.table("atmosphere").map(|t| read_air(&t, datum, &Starlight::default())).unwrap_or_default(),
     };
     r.finish();
     Some(Planet { star: star?, air: air.look? })

@@ -8,6 +8,7 @@ use super::reader::{Faults, POSITIVE, Reader, count_errors};
 use super::relief::load_maps;
 use super::tree::{Data, Node, parse};
 use crate::world::system::{Body, System};
+use engine::light::spectrum::Starlight;
 use engine::orbit::BodyId;
 use engine::orbit::State;
 use engine::orbit::ephemeris::{Details, Ephemeris, EphemerisError, Mass, Orbit, Path as OrbitPath};
@@ -79,7 +80,7 @@ fn read(overlay: &Overlay, key: &str, faults: &Faults, hash: &mut blake3::Hasher
     }
     let top = read_top(Reader::new(&top?, faults), hash);
     tell_orphans(overlay, faults);
-    let mut specs = Vec::new();
+    let mut specs: Vec<BodySpec> = Vec::new();
     let mut whole = true;
     let mut drags = BTreeMap::new();
     for (body, at) in &top.bodies {
@@ -90,10 +91,15 @@ fn read(overlay: &Overlay, key: &str, faults: &Faults, hash: &mut blake3::Hasher
         };
         digest(&tree, &["name", "albedo"], hash);
         let spec = read_body(body, Reader::new(&tree, faults));
-        let (air, drag) = read_atmosphere(overlay, body, Datum::new(spec.gm_m3_s2, spec.radius_m), faults);
-        drags.insert(body.clone(), drag);
-        specs.push((spec, air));
+        specs.push(spec);
     }
+    let starlight = specs.iter().find_map(|s| s.starlight.clone()).unwrap_or_default();
+    let with_air = |spec: BodySpec| {
+        let (air, drag) = read_atmosphere(overlay, &spec.key, Datum::new(spec.gm_m3_s2, spec.radius_m), &starlight, faults);
+        drags.insert(spec.key.clone(), drag);
+        (spec, air)
+    };
+    let specs: Vec<(BodySpec, AirSpec)> = specs.into_iter().map(with_air).collect();
     let order = order(&specs, &top.bodies.keys().map(String::as_str).collect::<Vec<_>>(), faults)?;
     if !whole {
         return None;
@@ -125,7 +131,7 @@ fn read(overlay: &Overlay, key: &str, faults: &Faults, hash: &mut blake3::Hasher
     let solid = hash.finalize().to_hex().to_string();
     let hash = whole_hash(&solid, &drags);
     let system = build(key, top, specs, airs, reliefs, hash).map_err(|f| faults.borrow_mut().push(f)).ok()?;
-    Some(System { solid_hash: solid, ..system })
+    Some(System { solid_hash: solid, starlight, ..system })
 }
 
 /// The hash of what a flight depends on, from that of all but the air and those of the air that drags, by body.
@@ -146,7 +152,7 @@ pub fn reread_airs(overlay: &Overlay, system: &System) -> Result<Arc<System>, As
     let mut drags = BTreeMap::new();
     let mut bodies = system.bodies.clone();
     for body in &mut bodies {
-        let (air, drag) = read_atmosphere(overlay, &body.key, Datum::new(body.gm_m3_s2, body.radius_m), &faults);
+        let (air, drag) = read_atmosphere(overlay, &body.key, Datum::new(body.gm_m3_s2, body.radius_m), &system.starlight, &faults);
         (body.air, body.look) = (air.column, air.look);
         drags.insert(body.key.clone(), drag);
     }
@@ -154,7 +160,13 @@ pub fn reread_airs(overlay: &Overlay, system: &System) -> Result<Arc<System>, As
     let found = AssetErrors { faults: faults.into_inner() };
     let warnings = found.faults.iter().map(Fault::text).collect();
     let new = System::new(system.key.clone(), system.name.clone(), bodies, system.ephemeris.clone(), hash);
-    found.or(Arc::new(System { solid_hash: system.solid_hash.clone(), warnings, eclipses: system.eclipses.clone(), ..new }))
+    found.or(Arc::new(System {
+        solid_hash: system.solid_hash.clone(),
+        starlight: system.starlight.clone(),
+        warnings,
+        eclipses: system.eclipses.clone(),
+        ..new
+    }))
 }
 
 /// What `system.toml` says.
@@ -216,11 +228,22 @@ pub fn load_body(overlay: &Overlay, key: &str) -> Result<(), AssetErrors> {
     tell_orphans(overlay, &faults);
     if let Some(tree) = read_tree(overlay, &format!("bodies/{key}/body.toml"), "the body", &faults) {
         let spec = read_body(key, Reader::new(&tree, &faults));
-        read_atmosphere(overlay, key, Datum::new(spec.gm_m3_s2, spec.radius_m), &faults);
+        read_atmosphere(overlay, key, Datum::new(spec.gm_m3_s2, spec.radius_m), &Starlight::default(), &faults);
         let ground = if count_errors(&faults) == 0 { ground(&spec, overlay, &format!("bodies/{key}")) } else { Ground::default() };
         faults.borrow_mut().extend(ground.faults);
     }
     AssetErrors { faults: faults.into_inner() }.or(())
+}
+
+/// The air of a body alone.
+pub fn load_air(overlay: &Overlay, key: &str, star: &Starlight) -> Result<AirSpec, AssetErrors> {
+    let faults = Faults::default();
+    let mut air = AirSpec::default();
+    if let Some(tree) = read_tree(overlay, &format!("bodies/{key}/body.toml"), "the body", &faults) {
+        let spec = read_body(key, Reader::new(&tree, &faults));
+        air = read_atmosphere(overlay, key, Datum::new(spec.gm_m3_s2, spec.radius_m), star, &faults).0;
+    }
+    AssetErrors { faults: faults.into_inner() }.or(air)
 }
 
 /// Patches of what is not there, also in folders that no system lists.
@@ -250,7 +273,7 @@ fn tell_orphans(overlay: &Overlay, faults: &Faults) {
 
 /// The air of a body: a file of its own, without which there is none. The second value is the hash of what drags in it: the look is no
 /// part of a flight.
-fn read_atmosphere(overlay: &Overlay, body: &str, datum: Datum, faults: &Faults) -> (AirSpec, String) {
+fn read_atmosphere(overlay: &Overlay, body: &str, datum: Datum, star: &Starlight, faults: &Faults) -> (AirSpec, String) {
     let relative = format!("bodies/{body}/atmosphere.toml");
     if overlay.find(&relative).is_none() {
         return Default::default();
@@ -260,7 +283,7 @@ fn read_atmosphere(overlay: &Overlay, body: &str, datum: Datum, faults: &Faults)
     if let Some(physics) = tree.get("physics") {
         physics.value.digest(&mut hash);
     }
-    (read_air(&Reader::new(&tree, faults), datum), hash.finalize().to_hex().to_string())
+    (read_air(&Reader::new(&tree, faults), datum, star), hash.finalize().to_hex().to_string())
 }
 
 /// Feeds a file's values to the hash, but for what a flight does not depend on.

@@ -1,6 +1,7 @@
 //! Malformed assets, one test a case: each must end in a message with the file, the line and what was expected. Also what mods may do.
 //! The real solar system is measured in [`sol`].
 
+mod optics;
 mod sol;
 
 use super::*;
@@ -443,13 +444,15 @@ fn a_patch_of_what_is_not_there_is_named_itself() {
 #[test]
 fn a_watched_folder_reloads_and_a_broken_file_is_told() {
     let dir = assets();
-    let reloader = Reloader::watch(&Assets::new(dir.path().to_owned(), Vec::new()), "t").unwrap();
+    let assets = Assets::new(dir.path().to_owned(), Vec::new());
+    let reloader = Reloader::watch(&assets, "t").unwrap();
+    let first = assets.system("t", &|_, _| ()).unwrap();
     let wait = |what: &str| {
-        for _ in 0..100 {
-            if let Some(outcome) = reloader.poll() {
+        for _ in 0..1000 {
+            if let Some(outcome) = reloader.poll(&first) {
                 return outcome;
             }
-            std::thread::sleep(std::time::Duration::from_millis(50));
+            std::thread::sleep(std::time::Duration::from_millis(5));
         }
         panic!("nothing came: {what}");
     };
@@ -458,4 +461,91 @@ fn a_watched_folder_reloads_and_a_broken_file_is_told() {
     assert_eq!(system.body(system.find("moon").unwrap()).radius_m, 5.01e5);
     put(dir.path(), MOON_FILE, b"radius_km = ");
     assert!(wait("a broken file").unwrap_err().text().contains("not TOML"));
+}
+
+#[test]
+fn a_saved_sky_is_there_within_three_tenths_of_a_second() {
+    use std::time::{Duration, Instant};
+    let dir = assets();
+    let file = put(dir.path(), AIR_FILE, AIR.as_bytes());
+    let assets = Assets::new(dir.path().to_owned(), Vec::new());
+    let first = assets.system("t", &|_, _| ()).unwrap();
+    let reloader = Reloader::watch(&assets, "t").unwrap();
+    let blue = |system: &System| system.body(system.find("rock").unwrap()).look.as_ref().unwrap().medium.layers[0].scattering_per_m.z;
+    // As editors save: over the file, in two writes, through a file beside it and a rename.
+    let mut best = Duration::MAX;
+    for (i, way) in [0, 1, 2].into_iter().cycle().take(6).enumerate() {
+        let value = 1e-5 + 1e-6 * i as f32;
+        let text = AIR.replace("33.1e-6", &format!("{value:e}"));
+        let began = Instant::now();
+        match way {
+            0 => fs::write(&file, &text).unwrap(),
+            1 => {
+                fs::write(&file, &text[..text.len() / 2]).unwrap();
+                std::thread::sleep(Duration::from_millis(5));
+                fs::write(&file, &text).unwrap();
+            }
+            _ => {
+                let beside = file.with_file_name(".atmosphere.toml.swp");
+                fs::write(&beside, &text).unwrap();
+                fs::rename(&beside, &file).unwrap();
+            }
+        }
+        loop {
+            match reloader.poll(&first) {
+                Some(Ok(system)) if blue(&system) == value => break,
+                Some(Err(e)) => panic!("{}", e.text()),
+                _ => assert!(began.elapsed() < Duration::from_secs(20), "way {way}: nothing came"),
+            }
+            std::thread::sleep(Duration::from_millis(2));
+        }
+        best = best.min(began.elapsed());
+    }
+    println!("saved to read: {best:?}");
+    assert!(best < Duration::from_millis(300), "{best:?}");
+    // What an editor leaves beside it changes nothing; a file that is taken away does.
+    put(dir.path(), "bodies/rock/atmosphere.toml~", b"x");
+    put(dir.path(), "bodies/rock/.atmosphere.toml.swx", b"x");
+    std::thread::sleep(Duration::from_millis(250));
+    assert_eq!(reloader.changed(), None);
+    fs::remove_file(&file).unwrap();
+    let gone = (0..2000).find_map(|_| {
+        std::thread::sleep(Duration::from_millis(5));
+        reloader.poll(&first)
+    });
+    let system = gone.unwrap().unwrap();
+    assert!(system.body(system.find("rock").unwrap()).look.is_none());
+}
+
+#[test]
+fn an_air_that_is_hardly_meant_is_told_and_taken() {
+    let dir = assets();
+    let warned = |from: &str, to: &str| {
+        assert!(AIR.contains(from), "{from}");
+        put(dir.path(), AIR_FILE, AIR.replace(from, to).as_bytes());
+        load_system(dir.path(), &[], "t").unwrap_or_else(|e| panic!("{}", e.text())).warnings.clone()
+    };
+    assert_eq!(warned("g = 0.8", "g = 0.8"), [""; 0]);
+    for (from, to, line, words) in [
+        ("[5.8e-6, 13.5e-6, 33.1e-6]", "[5.8e-3, 13.5e-3, 33.1e-3]", 4, "look like values per kilometre"),
+        ("top_altitude_m = 80000.0", "top_altitude_m = 20000.0", 1, "a hard edge"),
+        ("scattering_per_m = [5.8e-6, 13.5e-6, 33.1e-6]", "scattering_per_m = [0.9, 13.5e-6, 33.1e-6]", 3, "no light comes through"),
+    ] {
+        let warnings = warned(from, to);
+        let told = |w: &String| {
+            w.contains(&format!("atmosphere.toml:{line}:")) && w.contains("warning: ") && w.contains(words) && w.contains("help: ")
+        };
+        assert!(warnings.iter().any(told), "{to}: {warnings:#?}");
+    }
+    let rayleigh = |h: &str| {
+        put(
+            dir.path(),
+            AIR_FILE,
+            AIR.replace("kind = \"cornette_shanks\", g = 0.8", "kind = \"rayleigh\"").replace("8000.0", h).as_bytes(),
+        );
+        load_system(dir.path(), &[], "t").unwrap().warnings.clone()
+    };
+    assert_eq!(rayleigh("8000.0"), [""; 0]);
+    let told = rayleigh("4000.0");
+    assert!(told.len() == 1 && told[0].contains("p ≠ ρ R T / M") && told[0].contains("atmosphere.toml:6:"), "{told:#?}");
 }

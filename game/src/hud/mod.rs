@@ -216,6 +216,17 @@ impl Hud {
         }
     }
 
+    /// Says once that files hold what can be used and is hardly meant; the log has it in full.
+    pub fn warn(&mut self, warnings: &[String]) {
+        for warning in warnings {
+            tracing::warn!("{warning}");
+        }
+        if let Some(first) = warnings.first().and_then(|w| w.lines().next()) {
+            let more = if warnings.len() > 1 { format!(" (and {} more)", warnings.len() - 1) } else { String::new() };
+            self.notice(format!("{first}{more}"));
+        }
+    }
+
     /// One frame. `scene` is there while a flight is.
     pub fn show(
         &mut self,

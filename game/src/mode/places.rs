@@ -47,7 +47,11 @@ fn usual_assets() -> Vec<PathBuf> {
     looked
 }
 
-/// The mods to overlay, each checked to be a folder; none in safe mode.
+/// The name of the mod that the editor in the game writes where no other is named.
+pub const EDITED: &str = "edited";
+
+/// The mods to overlay, the last on top; none in safe mode. First the folders in `mods/` of the data folder, by name, the editor's own
+/// (`edited`, there or not yet) last of them; then those that the command line names, as it names them, each checked to be a folder.
 ///
 /// # Errors
 /// [`PlaceError::NoFolder`].
@@ -55,10 +59,16 @@ pub fn mods(places: &Places) -> Result<Vec<PathBuf>, PlaceError> {
     if places.safe_mode {
         return Ok(Vec::new());
     }
-    match places.mods.iter().find(|m| !m.is_dir()) {
-        Some(path) => Err(PlaceError::NoFolder { path: path.clone(), what: "--mods" }),
-        None => Ok(places.mods.clone()),
+    if let Some(path) = places.mods.iter().find(|m| !m.is_dir()) {
+        return Err(PlaceError::NoFolder { path: path.clone(), what: "--mods" });
     }
+    let folder = data_dir(places).join("mods");
+    let entries = std::fs::read_dir(&folder).into_iter().flatten().flatten();
+    let mut mods: Vec<PathBuf> = entries.map(|e| e.path()).filter(|p| p.is_dir() && !p.ends_with(EDITED)).collect();
+    mods.sort();
+    mods.push(folder.join(EDITED));
+    mods.extend(places.mods.iter().cloned());
+    Ok(mods)
 }
 
 /// The folder for saves and settings: `--data-dir`, else `$SYZYGY_DATA_DIR`, else `saves/` of the checkout the program was
@@ -109,6 +119,16 @@ mod tests {
     fn safe_mode_leaves_mods_out_and_a_missing_mod_is_named() {
         let mut places = Places { mods: vec!["no/such/mod".into()], ..Places::default() };
         assert!(mods(&places).unwrap_err().to_string().contains("no/such/mod"));
+        places.mods.clear();
+        let data = tempfile::tempdir().unwrap();
+        for name in ["b", "edited", "a"] {
+            std::fs::create_dir_all(data.path().join("mods").join(name)).unwrap();
+        }
+        places.data_dir = Some(data.path().to_owned());
+        places.mods = vec![data.path().to_owned()];
+        let found = mods(&places).unwrap();
+        let expected = ["mods/a", "mods/b", "mods/edited", ""].map(|m| data.path().join(m));
+        assert_eq!(found, expected);
         places.safe_mode = true;
         assert!(mods(&places).unwrap().is_empty());
     }

@@ -80,6 +80,11 @@ impl World {
         if self.system.bodies.len() != system.bodies.len() || !self.system.bodies.iter().zip(&system.bodies).all(same) {
             return false;
         }
+        // Only what is seen has changed: the flight goes on to the bit.
+        if self.system.hash == system.hash {
+            self.system = system.clone();
+            return true;
+        }
         self.leave_path();
         if let Motion::Landed(rest) | Motion::Crashed(rest) = &mut self.ship.motion {
             let up = rest.position.0.normalize_or(DVec3::Z);

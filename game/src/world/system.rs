@@ -4,6 +4,7 @@ use super::eclipse::almanac::Almanac;
 use super::ship::local::air_top_m;
 use super::ship::warp::floor_m;
 use engine::air::{Air, Column};
+use engine::light::spectrum::Starlight;
 use engine::orbit::eclipse::Shape;
 use engine::orbit::ephemeris::Ephemeris;
 use engine::orbit::field::{Bound, Source};
@@ -71,6 +72,8 @@ pub struct System {
     pub ephemeris: Ephemeris,
     /// Force of the star's light on a black square metre times the square of its distance, N: as much per candela as the Sun's.
     pub light_n: f64,
+    /// Spectrum of the star's light, by which airs are read anew.
+    pub starlight: Starlight,
     /// How they attract a ship, and where one changes from one to the other.
     pub gravity: Model,
     /// blake3 of the asset files that the World depends on, hex; a replay refuses others.
@@ -107,6 +110,7 @@ impl System {
             bodies,
             ephemeris,
             light_n,
+            starlight: Starlight::default(),
             gravity,
             hash,
             solid_hash: String::new(),

@@ -2,13 +2,26 @@
 //!
 //! [`physical`] is the default. What a model draws is judged by [`super::reference`]; its shader is `shaders/pass/sky_<model>.wgsl`.
 
+pub mod gradient;
+pub mod limb_table;
+pub mod maps;
 pub mod orders;
 pub mod physical;
+pub mod shell;
+pub mod thickness;
+pub mod view_space;
+pub mod view_table;
 
 use super::Medium;
+use super::spectral::Bands;
 use serde::{Deserialize, Serialize};
 
+pub use gradient::Gradient;
+pub use limb_table::LimbTable;
+pub use maps::ColourMap;
 pub use physical::Physical;
+pub use thickness::Thickness;
+pub use view_table::ViewTable;
 
 /// How the light of an air is found.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -16,6 +29,14 @@ pub use physical::Physical;
 pub enum Model {
     /// Single scattering exact along the ray, higher orders from tables.
     Physical(Physical),
+    /// As bright as the air is thick along the ray; the planet's shadow as a cone in it.
+    Thickness(Thickness),
+    /// A 2-D table by two cosines at the shell's top, laid over additively.
+    LimbTable(LimbTable),
+    /// A 3-D table of single scattering by height, view and sun.
+    ViewTable(ViewTable),
+    /// Colours of two small painted maps.
+    Gradient(Gradient),
 }
 
 impl Default for Model {
@@ -29,6 +50,8 @@ impl Default for Model {
 pub struct Air {
     /// The optical layers. A stylised model may have none: then nothing reddens the sun and no sky lights the ground.
     pub medium: Medium,
+    /// The same in six bands, where [`Model::Physical`] is to draw it by those; everything else draws by `medium`.
+    pub bands: Option<Box<Bands>>,
     /// The model and its settings.
     pub model: Model,
 }
@@ -36,6 +59,6 @@ pub struct Air {
 impl From<Medium> for Air {
     /// The default model.
     fn from(medium: Medium) -> Self {
-        Self { medium, model: Model::default() }
+        Self { medium, bands: None, model: Model::default() }
     }
 }

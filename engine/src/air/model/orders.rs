@@ -213,7 +213,8 @@ fn path_rows(medium: &Medium, chi: &[Vec<f64>], from_m: f64, direction: &Directi
         let mut total = DVec3::ZERO;
         for (layer, chi) in medium.layers.iter().zip(chi) {
             // Two Gauss points.
-            let density = 0.5 * [0.211_324_865_405, 0.788_675_134_595].map(|x| layer.profile.density(altitude(from + x * length))).iter().sum::<f64>();
+            let density = 0.5
+                * [0.211_324_865_405, 0.788_675_134_595].map(|x| layer.profile.density(altitude(from + x * length))).iter().sum::<f64>();
             let scattering = layer.scattering_per_m.as_dvec3() * density;
             extinction += scattering + layer.absorption_per_m.as_dvec3() * density;
             total += scattering;
@@ -222,7 +223,9 @@ fn path_rows(medium: &Medium, chi: &[Vec<f64>], from_m: f64, direction: &Directi
         let depth = extinction * length;
         let kept = depth.to_array().map(|x| libm::exp(-x));
         // ∫ e^(−σs) ds over the step, in front of it the way to the eye.
-        let arrives = DVec3::from_array([0, 1, 2].map(|c| if depth[c] > 1e-4 { (1.0 - kept[c]) / extinction[c] } else { length * (1.0 - 0.5 * depth[c]) })) * through;
+        let arrives = DVec3::from_array(
+            [0, 1, 2].map(|c| if depth[c] > 1e-4 { (1.0 - kept[c]) / extinction[c] } else { length * (1.0 - 0.5 * depth[c]) }),
+        ) * through;
         let h = altitude(s);
         let (sine, cosine) = dip(bottom, h.max(0.0));
         let place = (h / top).clamp(0.0, 1.0).sqrt() * (ALTITUDES - 1) as f64;

@@ -63,9 +63,8 @@ impl OrdersBaker {
             ty: wgpu::BindingType::StorageTexture { access: wgpu::StorageTextureAccess::WriteOnly, format: HDR, view_dimension },
             count: None,
         };
-        let layout = |entries: &[_]| {
-            gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("air orders"), entries })
-        };
+        let layout =
+            |entries: &[_]| gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("air orders"), entries });
         let each = layout(&[
             uniform_entry(0),
             texture_entry(1, TextureViewDimension::D2Array),
@@ -144,16 +143,20 @@ impl OrdersBaker {
         let (directions, views, altitudes) = (DIRECTIONS as u32, VIEWS as u32, ALTITUDES as u32);
         for order in 0..orders {
             let number = buffer(bytemuck::bytes_of(&[order, orders, inputs.slot, 0]), BufferUsages::UNIFORM);
-            let group = bind(gpu, &self.layout, [
-                (0, BindingResource::Buffer(inputs.air.clone())),
-                (1, BindingResource::TextureView(inputs.transmittance)),
-                (2, BindingResource::Sampler(inputs.linear)),
-                (3, number.as_entire_binding()),
-                (4, plan.as_entire_binding()),
-                (5, self.gathered.as_entire_binding()),
-                (6, self.sources.as_entire_binding()),
-                (7, self.irradiance.as_entire_binding()),
-            ]);
+            let group = bind(
+                gpu,
+                &self.layout,
+                [
+                    (0, BindingResource::Buffer(inputs.air.clone())),
+                    (1, BindingResource::TextureView(inputs.transmittance)),
+                    (2, BindingResource::Sampler(inputs.linear)),
+                    (3, number.as_entire_binding()),
+                    (4, plan.as_entire_binding()),
+                    (5, self.gathered.as_entire_binding()),
+                    (6, self.sources.as_entire_binding()),
+                    (7, self.irradiance.as_entire_binding()),
+                ],
+            );
             pass.set_bind_group(0, &group, &[]);
             pass.set_pipeline(if order == 0 { &self.first } else { &self.next });
             pass.dispatch_workgroups(directions, altitudes, 1);
@@ -161,14 +164,18 @@ impl OrdersBaker {
             pass.dispatch_workgroups(views, altitudes, 1);
         }
         let number = buffer(bytemuck::bytes_of(&[0, orders, inputs.slot, 0]), BufferUsages::UNIFORM);
-        let group = bind(gpu, &self.sum_layout, [
-            (3, number.as_entire_binding()),
-            (4, self.sources.as_entire_binding()),
-            (5, self.irradiance.as_entire_binding()),
-            (6, self.scalars.as_entire_binding()),
-            (7, BindingResource::TextureView(&self.view())),
-            (8, BindingResource::TextureView(inputs.irradiance)),
-        ]);
+        let group = bind(
+            gpu,
+            &self.sum_layout,
+            [
+                (3, number.as_entire_binding()),
+                (4, self.sources.as_entire_binding()),
+                (5, self.irradiance.as_entire_binding()),
+                (6, self.scalars.as_entire_binding()),
+                (7, BindingResource::TextureView(&self.view())),
+                (8, BindingResource::TextureView(inputs.irradiance)),
+            ],
+        );
         pass.set_bind_group(0, &group, &[]);
         pass.set_pipeline(&self.products);
         pass.dispatch_workgroups(orders - 1, orders, 1);

@@ -22,7 +22,7 @@ use wgpu::{BindGroupEntry, BufferUsages};
 pub struct ProbeRay {
     /// Unit zenith of the eye, and its altitude, m.
     pub up: [f32; 4],
-    /// Unit direction of sight, and 0.
+    /// Unit direction of sight, and the distance to a surface that ends the ray, m (0: none, the datum ends it).
     pub ray: [f32; 4],
     /// Unit direction to the sun, and its angular radius, rad.
     pub sun: [f32; 4],

@@ -14,6 +14,11 @@ const SHARE: Kind = Kind::Rgb(Span::linear(0.0, 1.0));
 pub const ATMOSPHERE: &[Field] = &[
     may("model", Kind::Choice(MODELS), "how the light of the air is found: \"physical\" where it is left out"),
     may("spectrum", Kind::Choice(SPECTRA), "how three channels are made of a layer's physical inputs: \"rgb\" where it is left out"),
+    may(
+        "wavelengths_nm",
+        Kind::Rgb(Span::linear(100.0, 2000.0)),
+        "where numbers in threes hold: red, green, blue, falling; 680, 550, 440 where it is left out",
+    ),
     may("top_altitude_m", Kind::Number(Span::log(100.0, 1.0e7)), "altitude where the air ends, above the datum; at most the body's radius"),
     may("ground_albedo", SHARE, "Lambert albedo of the ground that lights the air from below"),
     may("layers", Kind::Tables(LAYER), "what scatters and absorbs, any number of layers; `layers = []` is a vacuum"),
@@ -44,8 +49,58 @@ pub const LAYER: &[Field] = &[
     may("name", Kind::Text, "what patches call it: `[layers.dust]` changes the layer named \"dust\""),
     may("scattering_per_m", PER_M, "scattering coefficient at density 1; red, green, blue"),
     may("absorption_per_m", PER_M, "absorption coefficient at density 1; red, green, blue"),
+    may(
+        "gas",
+        Kind::Table(GAS),
+        "in place of the coefficients: Rayleigh scattering from the gas's own numbers; needs no profile and no phase",
+    ),
+    may("aerosol", Kind::Table(AEROSOL), "in place of the coefficients: dust, droplets or smoke by their optical depth or their number"),
+    may("absorber", Kind::Table(ABSORBER), "in place of the coefficients: a known absorber by its column; needs no phase"),
+    may("table", Kind::Table(BY_WAVELENGTH), "in place of the coefficients: coefficients at many wavelengths"),
     may("profile", Kind::Variants(PROFILE), "density against altitude, relative to the coefficients"),
     may("phase", Kind::Variants(PHASE), "where scattered light goes"),
+];
+
+/// A gas: the ranges are those of `engine::air::optics`.
+const GAS: &[Field] = &[
+    may("molecules", Kind::Shares(MOLECULES), "which, by number; the shares are scaled to 1"),
+    may("refractive_index", Kind::OneOrRgb(Span::linear(1.0, 1.1)), "in place of `molecules`: of the gas at its density at the datum"),
+    may("depolarisation", Kind::Number(Span::linear(0.0, 0.5)), "ratio for natural light, with `refractive_index`; 0 where it is left out"),
+    may("molecular_density_per_m3", Kind::Number(Span::log(1.0e15, 1.0e29)), "molecules at the datum; or `pressure_pa`"),
+    may("pressure_pa", Kind::Number(Span::log(1.0e-6, 1.0e9)), "at the datum; an ideal gas at `temperature_k`"),
+    may("temperature_k", Kind::Number(Span::linear(1.0, 1.0e4)), "needed by `pressure_pa`, and by the scale height where it is left out"),
+    may("molar_mass_kg_mol", Kind::Number(Span::log(1.0e-4, 1.0)), "that of `molecules` where it is left out"),
+    may("scale_height_m", Kind::Number(Span::log(10.0, 1.0e6)), "R T / (M g) with the body's gravity where it is left out"),
+];
+
+/// Names of [`engine::air::optics::Molecule`].
+const MOLECULES: &[&str] = &["air", "n2", "o2", "ar", "co2", "h2", "he", "ch4"];
+
+/// An aerosol.
+const AEROSOL: &[Field] = &[
+    may("optical_depth", Kind::Number(Span::log(0.0, 1.0e3)), "of the layer, straight up, at 550 nm; or the particles"),
+    may("particle_density_per_m3", Kind::Number(Span::log(0.0, 1.0e20)), "particles at density 1"),
+    may("particle_radius_m", Kind::Number(Span::log(1.0e-10, 1.0e-2)), "of each"),
+    may("efficiency", Kind::Number(Span::linear(0.0, 4.0)), "extinction over the particles' own cross-section; 2 where it is left out"),
+    may(
+        "angstrom_exponent",
+        Kind::Number(Span::linear(-4.0, 4.0)),
+        "extinction goes as the wavelength to minus this; 0, grey, where it is left out",
+    ),
+    must("single_scattering_albedo", Kind::OneOrRgb(Span::linear(0.0, 1.0)), "share that is scattered, not absorbed"),
+];
+
+/// An absorber that is known.
+const ABSORBER: &[Field] = &[
+    must("species", Kind::Choice(&[("ozone", "Chappuis band")]), "which"),
+    must("column_du", Kind::Number(Span::log(0.0, 1.0e5)), "straight up, in Dobson units of 2.687e20 molecules per m²"),
+];
+
+/// Coefficients by wavelength.
+const BY_WAVELENGTH: &[Field] = &[
+    must("wavelengths_nm", Kind::Numbers(Span::linear(100.0, 1.0e5)), "rising"),
+    must("scattering_per_m", Kind::Numbers(Span::log(0.0, 1.0)), "at each, at density 1"),
+    must("absorption_per_m", Kind::Numbers(Span::log(0.0, 1.0)), "at each, at density 1"),
 ];
 
 /// Densities against altitude.
@@ -161,4 +216,17 @@ const VIEW_TABLE: &[Field] = &[
     may("samples", Kind::Whole(Span::log(2.0, 500.0)), "samples along a ray of sight"),
     may("depth_samples", Kind::Whole(Span::log(2.0, 500.0)), "samples of an optical depth"),
     may("ambient_samples", Kind::Whole(Span::log(2.0, 128.0)), "directions of the sky's light, each way"),
+    may(
+        "spacing",
+        Kind::Choice(&[
+            ("graded", "dense at the horizon, the ground and the terminator"),
+            ("uniform", "even in height and angles, as in the thesis"),
+        ]),
+        "how table entries and samples lie",
+    ),
+    may(
+        "alpha_colour",
+        Kind::Choice(&[("proportional", "reddened as the air beside it is"), ("grey", "the particles' own colour, as in the thesis")]),
+        "how the aerosol's light gets its colour",
+    ),
 ];

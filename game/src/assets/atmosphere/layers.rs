@@ -1,17 +1,18 @@
 //! The layers of an air: coefficients as written, or made of physical inputs.
 
 use super::Datum;
-use crate::assets::body::vec3;
+use super::optics::{self, Channels, KINDS};
 use crate::assets::fault::Fault;
 use crate::assets::reader::{ANY, Reader};
-use engine::air::{Layer, Phase, Profile};
+use engine::air::spectral::{Optics, SpectralLayer};
+use engine::air::{Phase, Profile};
 use serde::de::DeserializeOwned;
 
 /// Names that a patch of the list means otherwise.
 const RESERVED: [&str; 2] = ["add", "remove"];
 
 /// Reads the list; what is left out and needed is written down.
-pub fn read(r: &Reader<'_>, datum: Datum) -> Vec<Layer> {
+pub fn read(r: &Reader<'_>, datum: Datum, channels: Channels) -> Vec<SpectralLayer> {
     let mut names: Vec<String> = Vec::new();
     let mut layers = Vec::new();
     for t in r.tables("layers") {
@@ -24,20 +25,23 @@ pub fn read(r: &Reader<'_>, datum: Datum) -> Vec<Layer> {
             }
             names.push(name);
         }
-        layers.extend(layer(&t, datum));
+        layers.extend(layer(&t, datum, channels));
     }
     layers
 }
 
-fn layer(t: &Reader<'_>, _datum: Datum) -> Option<Layer> {
-    let (scattering_per_m, absorption_per_m) = (vec3(t.numbers("scattering_per_m", ANY)), vec3(t.numbers("absorption_per_m", ANY)));
+fn layer(t: &Reader<'_>, datum: Datum, channels: Channels) -> Option<SpectralLayer> {
+    if KINDS.into_iter().any(|kind| t.has(kind)) {
+        return optics::read(t, datum, channels);
+    }
+    let optics = Optics::Channels(t.numbers("scattering_per_m", ANY), t.numbers("absorption_per_m", ANY));
     let profile = typed::<Profile>(t, "profile", "a table with the `kind` of profile");
     let phase = typed::<Phase>(t, "phase", "a table with the `kind` of phase function");
-    Some(Layer { scattering_per_m, absorption_per_m, profile: profile?, phase: phase? })
+    Some(SpectralLayer { optics, profile: profile?, phase: phase? })
 }
 
 /// A table that holds to its keys, as the engine's type of it.
-fn typed<T: DeserializeOwned>(t: &Reader<'_>, key: &'static str, expected: &str) -> Option<T> {
+pub fn typed<T: DeserializeOwned>(t: &Reader<'_>, key: &'static str, expected: &str) -> Option<T> {
     let node = t.needed(key, expected)?;
     match serde_json::from_value(node.json()) {
         Ok(value) => Some(value),

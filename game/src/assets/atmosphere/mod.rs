@@ -5,14 +5,18 @@
 
 pub mod keys;
 pub mod layers;
+pub mod optics;
 pub mod plausible;
 
-use super::body::vec3;
 use super::fields;
 use super::reader::{ANY, Reader};
 use super::tree::{Data, Node};
 use engine::air::density::Lapse;
-use engine::air::{Air, Column, ColumnSpec, MediumSpec, Model, RangeError};
+use engine::air::spectral::SpectralMedium;
+use engine::air::{Air, Column, ColumnSpec, Model, RangeError};
+use engine::light::spectrum::Starlight;
+use engine::units::NM;
+use optics::Channels;
 
 /// Air as its file describes it.
 #[derive(Clone, Debug, Default)]
@@ -21,6 +25,8 @@ pub struct AirSpec {
     pub column: Option<Column>,
     /// What one sees, if anything.
     pub look: Option<Air>,
+    /// What `look` was drawn from.
+    pub by_wavelength: Option<SpectralMedium>,
 }
 
 /// What a body lends to its air.
@@ -42,19 +48,19 @@ impl Datum {
     }
 }
 
-/// Reads the file: faults and warnings go to the reader.
-pub fn read_air(r: &Reader<'_>, datum: Datum) -> AirSpec {
+/// Reads the file: faults and warnings go to the reader. `star` is the light under which its colours are found.
+pub fn read_air(r: &Reader<'_>, datum: Datum, star: &Starlight) -> AirSpec {
     let before = r.errors();
     fields::check(r.again(), keys::ATMOSPHERE);
     if r.errors() > before {
         return AirSpec::default();
     }
     let column = r.maybe_table("physics").and_then(|t| tell(&t, "", Column::new(&column_of(&t, datum))));
-    let look = look_of(r, datum);
+    let (look, by_wavelength) = look_of(r, datum, star).unzip();
     if let Some(look) = look.as_ref().filter(|_| r.errors() == before) {
         plausible::suspicions(r.node, look, column.as_ref(), datum.gravity_m_s2).into_iter().for_each(|s| r.fault(s));
     }
-    AirSpec { column, look }
+    AirSpec { column, look, by_wavelength }
 }
 
 /// Turns range errors into faults; `table` is where their fields are, with a point behind it.
@@ -90,7 +96,7 @@ fn column_of(r: &Reader<'_>, datum: Datum) -> ColumnSpec {
 }
 
 /// The look. What each model cannot do without is asked for here.
-fn look_of(r: &Reader<'_>, datum: Datum) -> Option<Air> {
+fn look_of(r: &Reader<'_>, datum: Datum, star: &Starlight) -> Option<(Air, SpectralMedium)> {
     let before = r.errors();
     let word = r.node.get("model").and_then(|e| e.value.text()).unwrap_or("physical");
     if word == "none" {
@@ -98,18 +104,22 @@ fn look_of(r: &Reader<'_>, datum: Datum) -> Option<Air> {
     }
     let top_altitude_m = r.number("top_altitude_m", ANY);
     let lit_by_layers = matches!(word, "physical" | "view_table");
-    let ground_albedo = if lit_by_layers || r.has("ground_albedo") { vec3(r.numbers("ground_albedo", ANY)) } else { glam::Vec3::ZERO };
+    let ground_albedo = if lit_by_layers || r.has("ground_albedo") { r.numbers("ground_albedo", ANY) } else { [0.0; 3] };
     if lit_by_layers {
         r.needed("layers", "a list of tables [[layers]], or `layers = []` for a vacuum");
     }
-    let layers = layers::read(r, datum);
+    let wavelengths_m = r.has("wavelengths_nm").then(|| r.numbers("wavelengths_nm", ANY).map(|nm| nm * NM));
+    let wavelengths_m = wavelengths_m.unwrap_or(SpectralMedium::WAVELENGTHS_M);
+    let layers = layers::read(r, datum, Channels { wavelengths_m });
     let model = model_of(r, word);
-    let spec = MediumSpec { top_altitude_m, ground_albedo, layers };
-    let medium = tell(r, "", spec.build(datum.radius_m));
+    let by_wavelength = SpectralMedium { bottom_radius_m: datum.radius_m, top_altitude_m, ground_albedo, wavelengths_m, layers };
+    let spectral = word == "physical" && r.node.get("spectrum").and_then(|e| e.value.text()) == Some("spectral");
+    let drawn = tell(r, "", by_wavelength.draw(spectral, star));
     if r.errors() > before {
         return None;
     }
-    Some(Air { medium: medium?, model: model? })
+    let (medium, bands) = drawn?;
+    Some((Air { medium, bands, model: model? }, by_wavelength))
 }
 
 /// The model that a word names, with the settings in the table of that name.

@@ -9,6 +9,8 @@ use glam::DVec3;
 
 /// Vertical optical depth beyond which even the sun is nowhere to be seen from the ground: Venus's clouds have 30.
 const ABSURD_DEPTH: f64 = 100.0;
+/// Vertical optical depth that a layer may well have: a thousand times as much is a value per kilometre.
+const THICK_DEPTH: f64 = 5.0;
 /// Optical depth of a grazing ray at the top beyond which the air visibly ends there.
 const EDGE_DEPTH: f64 = 0.01;
 /// Factor between a molecular layer's scale height and that of the gas that drags.
@@ -30,7 +32,7 @@ pub fn suspicions(tree: &Node, look: &Air, column: Option<&Column>, gravity_m_s2
         let depth = extinction * column_m;
         let strongest = if depth_of(layer.absorption_per_m) > depth_of(layer.scattering_per_m) { "absorption" } else { "scattering" };
         let place = format!("layers[{i}].{strongest}_per_m");
-        if depth.max_element() > ABSURD_DEPTH && depth.max_element() < 1e4 * ABSURD_DEPTH {
+        if (ABSURD_DEPTH..1000.0 * THICK_DEPTH).contains(&depth.max_element()) {
             tell(
                 &place,
                 format!("vertical optical depth {:.3} of this layer: the coefficients look like values per kilometre", depth.max_element()),

@@ -223,6 +223,7 @@ impl App {
         match begun {
             Ok((world, notes)) => {
                 let flight = Flight::new(world);
+                self.hud.warn(&flight.session.world.system.warnings);
                 self.input.adopt(&flight.readout);
                 self.flight = Some(flight);
                 self.still = drawing::Still::default();

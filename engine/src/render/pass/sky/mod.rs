@@ -9,7 +9,11 @@
 //! A new model: a variant of [`Model`], a file here with its painter, its place in [`PAINTERS`], [`painter_of`] and [`model_name`].
 
 pub mod choose;
+pub mod gradient;
+pub mod limb_table;
 pub mod physical;
+pub mod thickness;
+pub mod view_table;
 
 use crate::air::{Air, Model};
 use crate::gpu::buffer::Uniform;
@@ -34,6 +38,11 @@ pub trait Painter: Send {
     fn kind(&self) -> &PainterKind;
     /// The model's numbers for a body, in the order that its shader expects.
     fn settings(&self, body: &Body, air: &Air) -> SkySettings;
+    /// The same among the other bodies of a scene, for models that have more than one light.
+    fn settings_in(&self, scene: &Snapshot, body: &Body, air: &Air) -> SkySettings {
+        let _ = scene;
+        self.settings(body, air)
+    }
     /// Which pipeline draws a body.
     fn variant(&self, body: &Body, air: &Air) -> Variant {
         let _ = (body, air);
@@ -111,12 +120,16 @@ pub struct Parts<'a> {
 type Make = fn(&Parts<'_>) -> Result<Box<dyn Painter>, RenderError>;
 
 /// The painters, in the order of [`painter_of`].
-const PAINTERS: [Make; 1] = [physical::make];
+const PAINTERS: [Make; 5] = [physical::make, thickness::make, gradient::make, limb_table::make, view_table::make];
 
 /// Place of a model's painter in [`PAINTERS`].
 const fn painter_of(model: &Model) -> usize {
     match model {
         Model::Physical(_) => 0,
+        Model::Thickness(_) => 1,
+        Model::Gradient(_) => 2,
+        Model::LimbTable(_) => 3,
+        Model::ViewTable(_) => 4,
     }
 }
 
@@ -124,6 +137,10 @@ const fn painter_of(model: &Model) -> usize {
 pub const fn model_name(model: &Model) -> &'static str {
     match model {
         Model::Physical(_) => "physical",
+        Model::Thickness(_) => "thickness",
+        Model::Gradient(_) => "gradient",
+        Model::LimbTable(_) => "limb_table",
+        Model::ViewTable(_) => "view_table",
     }
 }
 
@@ -212,7 +229,10 @@ impl Sky {
             let Some((id, air)) = air_of(f.scene, choice) else { continue };
             let Some(painter) = self.painters.get(painter_of(&air.model)) else { continue };
             let Some(body) = f.scene.bodies.get(choice.body as usize) else { continue };
-            uniform.write(&f.gpu.queue, &SkyUniform { ids: [choice.body, self.steps, 0, 0], settings: painter.settings(body, air) });
+            uniform.write(
+                &f.gpu.queue,
+                &SkyUniform { ids: [choice.body, self.steps, 0, 0], settings: painter.settings_in(f.scene, body, air) },
+            );
             let targets = f.targets;
             let (current, other) = if self.in_aerial { (&targets.aerial, &targets.opaque) } else { (&targets.opaque, &targets.aerial) };
             let (from, into) = if choice.rect == whole {

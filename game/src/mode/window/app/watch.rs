@@ -2,6 +2,7 @@
 //! leaves the last good one in force and stands on the screen until it is mended. Not here: the watching ([`crate::assets::reload`]).
 
 use super::App;
+use crate::assets::reload::Change;
 use crate::assets::{AssetErrors, Reloader};
 use crate::mode::window::ahead::Ahead;
 use crate::mode::window::job::{Job, Outcome};
@@ -51,16 +52,24 @@ impl App {
         };
         self.watch.reading = None;
         // A file that was saved again while it was read is read again, and only then believed.
-        if reloader.changed() {
-            let (assets, key) = (self.opening.assets.clone(), reloader.key().to_owned());
-            self.watch.reading = Some(Job::spawn(move |progress| assets.system(&key, progress)));
-            return;
-        }
         let Some(flight) = &mut self.flight else { return };
+        let read = match reloader.changed() {
+            Some(Change::All) => {
+                let (assets, key) = (self.opening.assets.clone(), reloader.key().to_owned());
+                self.watch.reading = Some(Job::spawn(move |progress| assets.system(&key, progress)));
+                return;
+            }
+            // A few milliseconds: read at once, to be seen in this frame. While bodies wait for the next flight, the airs do, too.
+            Some(Change::Airs) if !self.watch.stale => Some(self.opening.assets.airs(&flight.session.world.system)),
+            _ => read,
+        };
         match read {
             Some(Ok(system)) => {
                 self.hud.fault = None;
-                system.ephemeris.take_over(&flight.session.world.system.ephemeris);
+                let seen_only = system.hash == flight.session.world.system.hash;
+                if !seen_only {
+                    system.ephemeris.take_over(&flight.session.world.system.ephemeris);
+                }
                 self.watch.stale = !flight.session.adopt(&system);
                 flight.readout = flight.session.world.readout();
                 self.hud.notice(if self.watch.stale {
@@ -68,7 +77,10 @@ impl App {
                 } else {
                     format!("{}: changed files taken over", system.name)
                 });
-                self.look_ahead();
+                self.hud.warn(&system.warnings);
+                if !seen_only {
+                    self.look_ahead();
+                }
             }
             Some(Err(errors)) => self.hud.fault = Some(errors.lines()),
             None => {}
