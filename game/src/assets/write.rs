@@ -90,11 +90,14 @@ fn names(list: &[Value]) -> Option<Vec<&str>> {
 /// The text is not TOML.
 pub fn into_text(text: &str, values: &Map<String, Value>) -> Result<String, String> {
     let mut document: DocumentMut = text.parse().map_err(|e: toml_edit::TomlError| e.to_string())?;
-    let fresh = document.as_table().is_empty();
+    // Comments of a file that holds nothing else are nobody's: they stay at its head.
+    let head = if document.as_table().is_empty() { text } else { "" };
+    if !head.is_empty() {
+        document = DocumentMut::new();
+    }
     table(document.as_table_mut(), values);
-    let text = document.to_string();
-    // The first table of a file that held nothing but comments needs no line before it.
-    Ok(if fresh { text.trim_start_matches('\n').to_owned() } else { text })
+    let written = document.to_string();
+    Ok(if text.is_empty() || !head.is_empty() { format!("{head}{}", written.trim_start_matches('\n')) } else { written })
 }
 
 fn table(into: &mut dyn TableLike, values: &Map<String, Value>) {
