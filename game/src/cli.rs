@@ -7,7 +7,7 @@ mod bench;
 mod eclipses;
 mod sky;
 
-pub use bench::{BenchEphemerisArgs, BenchKeplerArgs, BenchOrbitArgs, BenchShipsArgs};
+pub use bench::{BenchAirArgs, BenchEphemerisArgs, BenchKeplerArgs, BenchOrbitArgs, BenchShipsArgs};
 pub use eclipses::ProbeEclipsesArgs;
 pub use sky::ProbeSkyArgs;
 
@@ -52,7 +52,9 @@ pub enum Mode {
     #[command(after_help = "Example:\n  syzygy shot --start eclipse --camera chase --size 1280x720 --out shot.png --passes passes.json")]
     Shot(ShotArgs),
     /// Validate a system, body or mod folder and list every error
-    #[command(after_help = "Examples:\n  syzygy check-assets mods/my-moon\n  syzygy check-assets --schema atmosphere > atmosphere.schema.json")]
+    #[command(
+        after_help = "Examples:\n  syzygy check-assets mods/my-moon\n  syzygy check-assets --schema atmosphere > atmosphere.schema.json"
+    )]
     CheckAssets(CheckAssetsArgs),
     /// Ask the simulation for numbers, as JSON or CSV
     #[command(subcommand, after_help = "Example:\n  syzygy probe air --body earth --altitude-m 0 11000 50000")]
@@ -270,6 +272,9 @@ pub enum Bench {
     /// Every integrator on every case of the reference data: error against CPU time and evaluations
     #[command(after_help = "Example:\n  syzygy bench orbit --case LEO_1000orb --method gauss_radau --json leo.json --plot plots")]
     Orbit(BenchOrbitArgs),
+    /// How far the colours of each air are from those of all wavelengths, and Elek's test flight
+    #[command(after_help = "Example:\n  syzygy bench air --spectral --json colours.json\n  syzygy bench air --elek --json elek.json")]
+    Air(BenchAirArgs),
     /// What choosing the terms of gravity by an error bound costs in error and saves in time
     #[command(after_help = "Example:\n  syzygy bench ships --json ships.json")]
     Ships(BenchShipsArgs),

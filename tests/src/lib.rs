@@ -2,6 +2,8 @@
 
 pub mod flights;
 
+pub mod sky_truth;
+
 use engine::gpu::{BackendChoice, Gpu, ShaderLibrary, readback};
 use std::borrow::Cow;
 use wgpu::util::DeviceExt as _;

@@ -240,6 +240,17 @@ pub fn load_body(overlay: &Overlay, key: &str) -> Result<Vec<String>, AssetError
     found.or(warnings)
 }
 
+/// The air of a body alone.
+pub fn load_air(overlay: &Overlay, key: &str, star: &Starlight) -> Result<AirSpec, AssetErrors> {
+    let faults = Faults::default();
+    let mut air = AirSpec::default();
+    if let Some(tree) = read_tree(overlay, &format!("bodies/{key}/body.toml"), "the body", &faults) {
+        let spec = read_body(key, Reader::new(&tree, &faults));
+        air = read_atmosphere(overlay, key, Datum::new(spec.gm_m3_s2, spec.radius_m), star, &faults).0;
+    }
+    AssetErrors { faults: faults.into_inner() }.or(air)
+}
+
 /// Patches of what is not there, also in folders that no system lists.
 fn tell_orphans(overlay: &Overlay, faults: &Faults) {
     let known = bodies(overlay);
@@ -277,7 +288,10 @@ fn read_atmosphere(overlay: &Overlay, body: &str, datum: Datum, star: &Starlight
     if let Some(physics) = tree.get("physics") {
         physics.value.digest(&mut hash);
     }
-    (read_air(&Reader::new(&tree, faults), datum, &Setting { overlay, body, star }), hash.finalize().to_hex().to_string())
+    (
+        read_air(&Reader::new(&tree, faults), datum, &Setting { overlay, folder: &format!("bodies/{body}"), star }),
+        hash.finalize().to_hex().to_string(),
+    )
 }
 
 /// Feeds a file's values to the hash, but for what a flight does not depend on.

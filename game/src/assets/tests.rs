@@ -1,6 +1,7 @@
 //! Malformed assets, one test a case: each must end in a message with the file, the line and what was expected. Also what mods may do.
 //! The real solar system is measured in [`sol`].
 
+mod optics;
 mod sol;
 
 use super::*;

@@ -199,6 +199,7 @@ fn places_of(mode: &Mode) -> &Places {
         Mode::Bench(Bench::Ships(a)) => &a.places,
         Mode::Bench(Bench::Kepler(a)) => &a.places,
         Mode::Bench(Bench::Ephemeris(a)) => &a.places,
+        Mode::Bench(Bench::Air(a)) => &a.places,
     }
 }
 

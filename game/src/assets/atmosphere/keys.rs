@@ -219,6 +219,19 @@ const VIEW_TABLE: &[Field] = &[
     may("samples", Kind::Whole(Span::log(2.0, 500.0)), "samples along a ray of sight"),
     may("depth_samples", Kind::Whole(Span::log(2.0, 500.0)), "samples of an optical depth"),
     may("ambient_samples", Kind::Whole(Span::log(2.0, 128.0)), "directions of the sky's light, each way"),
+    may(
+        "spacing",
+        Kind::Choice(&[
+            ("graded", "dense at the horizon, the ground and the terminator"),
+            ("uniform", "even in height and angles, as in the thesis"),
+        ]),
+        "how table entries and samples lie",
+    ),
+    may(
+        "alpha_colour",
+        Kind::Choice(&[("proportional", "reddened as the air beside it is"), ("grey", "the particles' own colour, as in the thesis")]),
+        "how the aerosol's light gets its colour",
+    ),
 ];
 
 /// The keys of [`GRADIENT`] that name pictures: of the shell, of the ground.
@@ -232,8 +245,16 @@ const GRADIENT: &[Field] = &[
     may("transparency", Kind::Number(Span::linear(0.0, 1.0)), "how strong the air's colour can become over the ground"),
     may("brightness", Kind::Number(Span::log(0.0, 100.0)), "of the map's white; 1 is a white surface that faces the sun"),
     may("opacity", Kind::Number(Span::linear(0.0, 1.0)), "how much of the sky behind the shell is hidden where it is strongest"),
-    may(MAPS[0], Kind::File, "PNG, 32 × 16 texels as a rule. Left: away from the sun, right: toward it; bottom: at the surface, top: at the edge"),
-    may(MAPS[1], Kind::File, "PNG, 32 × 2 texels. Top row: the air's colour; bottom row: by what the sun's is multiplied. Left: midnight, right: noon"),
+    may(
+        MAPS[0],
+        Kind::File,
+        "PNG, 32 × 16 texels as a rule. Left: away from the sun, right: toward it; bottom: at the surface, top: at the edge",
+    ),
+    may(
+        MAPS[1],
+        Kind::File,
+        "PNG, 32 × 2 texels. Top row: the air's colour; bottom row: by what the sun's is multiplied. Left: midnight, right: noon",
+    ),
 ];
 
 /// A bank of fog, or a nebula.

@@ -30,6 +30,8 @@ pub struct AirSpec {
     pub column: Option<Column>,
     /// What one sees, if anything.
     pub look: Option<Air>,
+    /// What `look` was drawn from.
+    pub by_wavelength: Option<SpectralMedium>,
     /// Banks of fog and nebulae.
     pub fog: Vec<Fog>,
 }
@@ -58,8 +60,8 @@ impl Datum {
 pub struct Setting<'a> {
     /// The assets with mods over them.
     pub overlay: &'a Overlay,
-    /// The body's key.
-    pub body: &'a str,
+    /// The folder of the file, from the root of the assets.
+    pub folder: &'a str,
     /// The light under which its colours are found.
     pub star: &'a Starlight,
 }
@@ -72,12 +74,11 @@ pub fn read_air(r: &Reader<'_>, datum: Datum, setting: &Setting<'_>) -> AirSpec 
         return AirSpec::default();
     }
     let column = r.maybe_table("physics").and_then(|t| tell(&t, "", Column::new(&column_of(&t, datum))));
-    let look = look_of(r, datum, setting);
+    let (look, by_wavelength) = look_of(r, datum, setting).unzip();
     if let Some(look) = look.as_ref().filter(|_| r.errors() == before) {
         plausible::suspicions(r.node, look, column.as_ref(), datum.gravity_m_s2).into_iter().for_each(|s| r.fault(s));
     }
-    let fog = fog::read(r, datum);
-    AirSpec { column, look, fog }
+    AirSpec { column, look, by_wavelength, fog: fog::read(r, datum) }
 }
 
 /// Turns range errors into faults; `table` is where their fields are, with a point behind it.
@@ -113,7 +114,7 @@ fn column_of(r: &Reader<'_>, datum: Datum) -> ColumnSpec {
 }
 
 /// The look. What each model cannot do without is asked for here.
-fn look_of(r: &Reader<'_>, datum: Datum, setting: &Setting<'_>) -> Option<Air> {
+fn look_of(r: &Reader<'_>, datum: Datum, setting: &Setting<'_>) -> Option<(Air, SpectralMedium)> {
     let before = r.errors();
     let word = r.node.get("model").and_then(|e| e.value.text()).unwrap_or("physical");
     if word == "none" {
@@ -129,14 +130,14 @@ fn look_of(r: &Reader<'_>, datum: Datum, setting: &Setting<'_>) -> Option<Air> {
     let wavelengths_m = wavelengths_m.unwrap_or(SpectralMedium::WAVELENGTHS_M);
     let layers = layers::read(r, datum, Channels { wavelengths_m });
     let model = model_of(r, word, setting);
-    let medium = SpectralMedium { bottom_radius_m: datum.radius_m, top_altitude_m, ground_albedo, wavelengths_m, layers };
+    let by_wavelength = SpectralMedium { bottom_radius_m: datum.radius_m, top_altitude_m, ground_albedo, wavelengths_m, layers };
     let spectral = word == "physical" && r.node.get("spectrum").and_then(|e| e.value.text()) == Some("spectral");
-    let drawn = tell(r, "", medium.draw(spectral, setting.star));
+    let drawn = tell(r, "", by_wavelength.draw(spectral, setting.star));
     if r.errors() > before {
         return None;
     }
     let (medium, bands) = drawn?;
-    Some(Air { medium, bands, model: model? })
+    Some((Air { medium, bands, model: model? }, by_wavelength))
 }
 
 /// The model that a word names, with the settings in the table of that name.
@@ -180,7 +181,7 @@ fn painted(table: Option<&Node>, gradient: &mut Gradient, setting: &Setting<'_>,
     for (key, map) in keys::MAPS.into_iter().zip([&mut gradient.shell_map, &mut gradient.ground_map]) {
         let Some(entry) = table.and_then(|t| t.get(key)) else { continue };
         let name = entry.value.text().unwrap_or_default();
-        let relative = format!("bodies/{}/{name}", setting.body);
+        let relative = format!("{}/{name}", setting.folder);
         let fault = match setting.overlay.find(&relative).filter(|_| !name.contains("..")) {
             None => Fault::at(&entry.value.at, format!("`gradient.{key}` = \"{name}\": expected a PNG beside this file"))
                 .help(Some(format!("looked for {relative} in the assets and in the mods"))),
