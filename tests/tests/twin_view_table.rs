@@ -113,7 +113,10 @@ fn the_difference_of_two_depths_keeps_its_digits() {
                 let r = medium.bottom_radius_m + h;
                 let there = (r * r + 2.0 * r * mu * distance + distance * distance).sqrt() - medium.bottom_radius_m;
                 // Only what lies above the ground on the way, too.
-                if there < 0.0 || there > medium.top_altitude_m || (mu < 0.0 && distance > -r * mu && r * (1.0 - mu * mu).sqrt() < medium.bottom_radius_m) {
+                if there < 0.0
+                    || there > medium.top_altitude_m
+                    || (mu < 0.0 && distance > -r * mu && r * (1.0 - mu * mu).sqrt() < medium.bottom_radius_m)
+                {
                     continue;
                 }
                 rays.push(probe_ray(h, f64::acos(mu), 0.6, 20.0, distance));
@@ -191,8 +194,13 @@ fn nothing_is_nan_wherever_one_stands() {
                 }
             }
         }
-        for (ray, light) in rays.iter().zip(ask(&medium, &ViewTable { height_size: 8, view_size: 16, sun_size: 12, samples: 12, ..ViewTable::default() }, &rays)) {
-            let fine = light.radiance.iter().all(|x| x.is_finite() && *x >= 0.0) && light.transmittance.iter().all(|x| (0.0..=1.0).contains(x));
+        for (ray, light) in rays.iter().zip(ask(
+            &medium,
+            &ViewTable { height_size: 8, view_size: 16, sun_size: 12, samples: 12, ..ViewTable::default() },
+            &rays,
+        )) {
+            let fine =
+                light.radiance.iter().all(|x| x.is_finite() && *x >= 0.0) && light.transmittance.iter().all(|x| (0.0..=1.0).contains(x));
             assert!(fine, "{ray:?}: {light:?}");
         }
     }
@@ -205,7 +213,8 @@ fn the_ground_is_lit_by_its_own_tables() {
     let model = ViewTable::default();
     let split = Split::new(&medium);
     let gpu = tests::gpu();
-    let mut renderer = Renderer::new(&gpu, RendererOptions { shaders: ShaderLibrary::checkout(), ..RendererOptions::default() }).expect("it compiles");
+    let mut renderer =
+        Renderer::new(&gpu, RendererOptions { shaders: ShaderLibrary::checkout(), ..RendererOptions::default() }).expect("it compiles");
     let image = OffscreenImage::new(&gpu, [16, 16]);
     for delta_deg in [20.0, 60.0, 85.0_f64] {
         let delta = delta_deg.to_radians();

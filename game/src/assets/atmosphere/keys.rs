@@ -218,7 +218,10 @@ const VIEW_TABLE: &[Field] = &[
     may("ambient_samples", Kind::Whole(Span::log(2.0, 128.0)), "directions of the sky's light, each way"),
     may(
         "spacing",
-        Kind::Choice(&[("graded", "dense at the horizon, the ground and the terminator"), ("uniform", "even in height and angles, as in the thesis")]),
+        Kind::Choice(&[
+            ("graded", "dense at the horizon, the ground and the terminator"),
+            ("uniform", "even in height and angles, as in the thesis"),
+        ]),
         "how table entries and samples lie",
     ),
     may(

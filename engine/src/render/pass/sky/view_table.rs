@@ -44,8 +44,7 @@ impl Bake {
     fn new(parts: &Parts<'_>, file: &str, entries: &[BindGroupLayoutEntry]) -> Result<Self, RenderError> {
         let Parts { gpu, shaders, .. } = parts;
         let entries = [&[uniform_entry(0), uniform_entry(1)], entries].concat();
-        let layout =
-            gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("view bake"), entries: &entries });
+        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("view bake"), entries: &entries });
         let pipeline = compute_pipeline(gpu, file, &shaders.load(&gpu.device, file)?, &[&layout], "bake");
         Ok(Self { layout, pipeline })
     }
@@ -56,11 +55,8 @@ impl Bake {
             BindGroupEntry { binding: 1, resource: tables.mirror.uniform.as_entire_binding() },
         ];
         entries.extend(own.iter().map(|(binding, resource)| BindGroupEntry { binding: *binding, resource: resource.clone() }));
-        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("view bake"),
-            layout: &self.layout,
-            entries: &entries,
-        });
+        let group =
+            gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("view bake"), layout: &self.layout, entries: &entries });
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &group, &[]);
         pass.dispatch_workgroups(groups[0], groups[1], groups[2]);
@@ -219,12 +215,8 @@ impl Painter for ViewTable {
             self.depth.run(gpu, pass, tables, &depth, [s.depth_angle_size.div_ceil(8), s.depth_height_size.div_ceil(8), 1]);
             let scatter = [(2, TextureView(&tables.mirror.scatter)), (3, TextureView(&tables.depth.view)), (4, media.clone())];
             self.scatter.run(gpu, pass, tables, &scatter, [s.view_size.div_ceil(8), s.sun_size.div_ceil(8), s.height_size]);
-            let ambient = [
-                (2, TextureView(&tables.ambient.view)),
-                (3, TextureView(&tables.mirror.scatter)),
-                (4, media),
-                (5, Sampler(&self.linear)),
-            ];
+            let ambient =
+                [(2, TextureView(&tables.ambient.view)), (3, TextureView(&tables.mirror.scatter)), (4, media), (5, Sampler(&self.linear))];
             self.ambient.run(gpu, pass, tables, &ambient, [s.ambient_size, 1, 1]);
         }
     }
