@@ -32,18 +32,19 @@ struct AirRay {
 // Light scattered towards the eye at a point, m⁻¹ sr⁻¹ per unit of illuminance. `phased` and `scattering` are the point's scattering
 // with and without the classes' phase functions, per channel.
 fn air_source(
-    air: Air, transmittance: texture_2d_array<f32>, multiple: texture_2d_array<f32>, linear: sampler, slot: i32,
+    air: Air, transmittance: texture_2d_array<f32>, orders: texture_3d<f32>, linear: sampler, slot: i32,
     along: AirRay, sun: AirSun, phased: vec3<f32>, scattering: vec3<f32>, s: f32, altitude: f32, eclipse: Eclipse,
 ) -> vec3<f32> {
     let mu_s = (along.up_sun + s * along.ray_sun) / (air.shape.x + altitude);
     let lit = visible_above_limb(sun.angular_radius, sun_elevation(air.shape.x, altitude, mu_s));
     return phased * (lit * eclipse.direct) * air_sun_transmittance(air, transmittance, linear, slot, altitude, mu_s)
-        + scattering * (sun.multiple * eclipse.diffuse) * air_multiple(air, multiple, linear, slot, altitude, mu_s);
+        + scattering * (sun.multiple * eclipse.diffuse)
+            * air_orders(air, orders, linear, slot, altitude, mu_s, (along.path.slope + s) / (air.shape.x + altitude), along.ray_sun);
 }
 
 // From the path's start to `end` metres further; `count` points on a long stretch. `ray` is the direction of sight, `star` the star's sphere.
 fn air_march(
-    air: Air, media: texture_2d_array<f32>, transmittance: texture_2d_array<f32>, multiple: texture_2d_array<f32>, linear: sampler,
+    air: Air, media: texture_2d_array<f32>, transmittance: texture_2d_array<f32>, orders: texture_3d<f32>, linear: sampler,
     slot: i32, path: AirPath, end: f32, ray: vec3<f32>, sun: AirSun, body: Body, star: vec4<f32>, count: u32,
 ) -> AirLight {
     let cosine = dot(ray, sun.direction);
@@ -82,7 +83,7 @@ fn air_march(
                     eclipse = eclipse_at(body, star, ray * (path.start + s), air.shape.y);
                 }
                 out.radiance += (dot(n.span * GAUSS_WEIGHT, one) * exp(-depth - run * one))
-                    * air_source(air, transmittance, multiple, linear, slot, along, sun, phased * one, all * one, s, dot(n.altitude, one), eclipse);
+                    * air_source(air, transmittance, orders, linear, slot, along, sun, phased * one, all * one, s, dot(n.altitude, one), eclipse);
             }
             depth += depths * GAUSS_WEIGHT;
         }

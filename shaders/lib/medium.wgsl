@@ -28,6 +28,7 @@ struct Air {
     phases: Phases,
     jumps_low: vec4<f32>,       // altitudes where density jumps; −1e9: none
     jumps_high: vec4<f32>,
+    orders: vec4<f32>,          // how the sun's height is mapped in the table of further orders: SunMap of engine/src/air/model/orders.rs, 0
 }
 
 struct Airs {

@@ -4,7 +4,7 @@
 #include "lib/air_march.wgsl"
 
 fn physical_light(
-    body: Body, air: Air, media: texture_2d_array<f32>, transmittance: texture_2d_array<f32>, multiple: texture_2d_array<f32>, linear: sampler,
+    body: Body, air: Air, media: texture_2d_array<f32>, transmittance: texture_2d_array<f32>, orders: texture_3d<f32>, linear: sampler,
     star: vec4<f32>, sky: Sky, view: SkyView,
 ) -> AirLight {
     let path = air_path(air, body.up.xyz, body.up.w, view.ray);
@@ -14,5 +14,5 @@ fn physical_light(
     }
     let sun = AirSun(body.sun.xyz, body.sun.w, 1.0, select(1.0, 0.0, (sky.ids.z & SKY_SINGLE) != 0u));
     return air_march(
-        air, media, transmittance, multiple, linear, body.ids.z, path, end, view.ray, sun, body, star, sky.ids.y);
+        air, media, transmittance, orders, linear, body.ids.z, path, end, view.ray, sun, body, star, sky.ids.y);
 }

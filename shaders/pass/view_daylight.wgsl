@@ -22,9 +22,11 @@ fn bake(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let sky = textureDimensions(irradiance);
     if all(id.xy < sky) {
-        let mu_s = lit_point(air, table_x(id.xy, vec2<f32>(sky))).y;
+        let at = table_x(id.xy, vec2<f32>(sky));
+        let mu_s = orders_sun_mu(air, horizon_dip(air.shape.x, at.y * at.y * air.shape.y), at.x);
         let size = f32(textureDimensions(ambient).x);
         let x = (space_sun_x(vt.counts.w > 0u, mu_s) * (size - 1.0) + 0.5) / size;
-        textureStore(irradiance, id.xy, textureSampleLevel(ambient, linear, vec2<f32>(x, 0.5), 0.0));
+        // Its square roots become the fourth roots of that table.
+        textureStore(irradiance, id.xy, sqrt(textureSampleLevel(ambient, linear, vec2<f32>(x, 0.5), 0.0)));
     }
 }

@@ -3,7 +3,7 @@
 //! | group | holds | who makes it |
 //! |---|---|---|
 //! | 0 | 0 `Frame`, 1 `Bodies`, 2 `Exposure` (all uniform; `shaders/lib/frame.wgsl`) | [`Shared`], each frame |
-//! | 1 | 0 airs (uniform), 1 transmittance, 2 multiple scattering, 3 irradiance (2-D arrays, a layer per air slot), 4 linear sampler, 5 shadow map, 6 comparison sampler, 7 shadow (uniform), 8 media (2-D array, loaded), 12 scattering (3-D) and 13 `ViewTable` (uniform) of the world whose water mirrors them | [`Shared::light_group`], from the values of the air-table, sky and shadow passes |
+//! | 1 | 0 airs (uniform), 1 transmittance, 2 further orders (3-D), 3 irradiance (1, 3: 2-D arrays, a layer per air slot), 4 linear sampler, 5 shadow map, 6 comparison sampler, 7 shadow (uniform), 8 media (2-D array, loaded), 12 scattering (3-D) and 13 `ViewTable` (uniform) of the world whose water mirrors them | [`Shared::light_group`], from the values of the air-table, sky and shadow passes |
 //! | 2, 3 | the pass's own | the pass |
 
 use super::maps::MapStore;
@@ -25,8 +25,8 @@ pub struct AirTables {
     pub airs: wgpu::Buffer,
     /// Transmittance to the star, 2-D array.
     pub transmittance: wgpu::TextureView,
-    /// Multiple scattering, 2-D array.
-    pub multiple: wgpu::TextureView,
+    /// Further orders of scattering, 3-D: `shaders/lib/air_orders.wgsl`.
+    pub orders: wgpu::TextureView,
     /// Illuminance of the sky on horizontal ground, 2-D array.
     pub irradiance: wgpu::TextureView,
     /// Media that are not formulas (`shaders/lib/medium.wgsl`), 2-D array, not filterable.
@@ -109,7 +109,7 @@ impl Shared {
             entries: &[
                 uniform_entry(0),
                 texture_entry(1, array),
-                texture_entry(2, array),
+                texture_entry(2, wgpu::TextureViewDimension::D3),
                 texture_entry(3, array),
                 sampler_entry(4, wgpu::SamplerBindingType::Filtering),
                 depth_entry(5),
@@ -161,7 +161,7 @@ impl Shared {
             entries: &[
                 entry(0, air.airs.as_entire_binding()),
                 entry(1, TextureView(&air.transmittance)),
-                entry(2, TextureView(&air.multiple)),
+                entry(2, TextureView(&air.orders)),
                 entry(3, TextureView(&air.irradiance)),
                 entry(4, Sampler(&self.linear)),
                 entry(5, TextureView(&shadow.depth)),

@@ -1,6 +1,7 @@
 //! `#[repr(C)]` mirrors of the structs of air in `shaders/`; the rules are those of [`super::gpu_data`].
 
 use super::gpu_data::vec4;
+use crate::air::model::orders::SunMap;
 use crate::air::model::view_space::Spacing;
 use crate::air::model::view_table::{AlphaColour, Split, ViewTable};
 use crate::air::{Classes, Layer, Medium, Phase, Profile};
@@ -47,6 +48,7 @@ pub struct AirUniform {
     pub phases: PhasesUniform,
     pub jumps_low: [f32; 4],
     pub jumps_high: [f32; 4],
+    pub orders: [f32; 4],
 }
 
 /// `Airs` of `shaders/lib/medium.wgsl`.
@@ -73,6 +75,8 @@ impl AirUniform {
         for (slot, jump) in air.jumps_low.iter_mut().chain(&mut air.jumps_high).zip(jumps) {
             *slot = narrow(jump);
         }
+        let map = SunMap::new(medium);
+        air.orders = [narrow(map.scale), narrow(map.low), narrow(map.inverse), 0.0];
         if classes.direct {
             medium.layers.iter().take(Classes::MAX).enumerate().for_each(|(i, layer)| air.set(i, layer));
         }

@@ -17,9 +17,13 @@
 //! - *modify*: `body.patch.toml`, `atmosphere.patch.toml` or `system.patch.toml` changes only the keys that it holds. Tables merge key by
 //!   key (one whose `kind` changes is replaced), values and lists are replaced. A *table* laid over a *list* changes items of the list:
 //!   `[layers.dust]` those keys of the layer named `dust`, `layers.remove = ["ozone"]` takes out, `[[layers.add]]` appends; likewise
-//!   `bodies.add = ["vulcan"]` in a system.
+//!   `bodies.add = ["vulcan"]` in a system. `remove = ["scale_m"]` in a table takes a key out.
 //!
-//! `syzygy check-assets DIR` tells everything that is wrong at once, in the words in which the game tells it.
+//! `syzygy check-assets DIR` tells everything that is wrong at once, in the words in which the game tells it. What can be used and is hardly
+//! meant is a warning ([`atmosphere::plausible`]).
+//!
+//! A file that is saved while one flies is there within 0.3 s ([`reload`]); files named `atmosphere…` (painted maps as well) are read alone.
+//! The editor in the game turns an air and writes its file ([`draft`]).
 //!
 //! # What a flight depends on
 //! A replay refuses other assets than its own: it compares [`System::hash`], which is made of the *values* that the World reads. Comments,
@@ -32,7 +36,7 @@
 //! | table | keys |
 //! |---|---|
 //! | (top) | `name`, `parent` (key of the body it orbits; only the star has none), `gm_km3_s2`, `radius_km` (datum sphere: sea level), `albedo = [r, g, b]` (linear sRGB, 0 … 1) |
-//! | `[star]` | for the star only: `illuminance_at_1_au_lx` (Sun: 1.28e5), `colour = [r, g, b]` (linear sRGB, luminance 1) |
+//! | `[star]` | for the star only: `illuminance_at_1_au_lx` (Sun: 1.28e5), *optional* its spectrum: `temperature_k` (a black body's), or `wavelengths_nm` (rising) and `irradiance` (any scale); the Sun's where neither is given. *Optional* `colour = [r, g, b]` (linear sRGB, luminance 1), that of the spectrum against D65 where it is left out |
 //! | `[rotation]` | *optional* `model`: `"earth"` (precession, nutation, observed UT1; takes no other key) or `"iau"` (the same as none). IAU form: `pole_ra_deg`, `pole_ra_deg_per_century`, `pole_dec_deg`, `pole_dec_deg_per_century`, `meridian_deg`, `meridian_deg_per_day`; *optional* `meridian_deg_per_century2` and lists of `[amplitude_deg, phase_deg, rate_deg_per_century]`: `pole_ra_terms` (sines), `pole_dec_terms` (cosines), `meridian_terms` (sines) |
 //! | `[shape]` | *optional*, for eclipses; all keys *optional*: `equatorial_radius_km` (else `radius_km`), `flattening` (0 … 0.5), `limb_radius_km = [outer, inner]` (of the limb at outer and inner contacts), `shadow_enlargement` (1 … 1.1: by air and oblateness, for eclipses of its moons) |
 //! | `[gravity]` | *optional*, what makes it more than a point: `reference_radius_km`, `j2`, `j3`, `j4` (unnormalised); *optional* `c22`, `tide_k2` and `tide_lag_s` (the bulge that others raise on it), `gm_with_moons_km3_s2` (with moons that have no folder) |
@@ -49,7 +53,11 @@
 //!
 //! | table | keys |
 //! |---|---|
-//! | (top) | `top_altitude_m`, `ground_albedo`, one to four `[[layers]]` with *optional* `name` (for patches), `scattering_per_m`, `absorption_per_m` (at density 1), `profile` (`{ kind = "exponential", scale_height_m }` or `{ kind = "tent", bottom_m, peak_m, top_m }`), `phase` (`{ kind = "rayleigh" }` or `{ kind = "cornette_shanks", g }`) |
+//! | (top) | *optional* `model`: `"physical"` (the same as none), `"thickness"`, `"limb_table"`, `"view_table"`, `"gradient"`, `"none"` (nothing is seen); *optional* `spectrum`: `"rgb"` (the same as none) or `"spectral"`; *optional* `wavelengths_nm = [red, green, blue]`, where numbers in threes hold; `top_altitude_m`; `ground_albedo` and `layers` (*optional* but for `physical` and `view_table`) |
+//! | `[[layers]]` | any number; *optional* `name` (for patches), `profile`, `phase`, and *one* of: `scattering_per_m` with `absorption_per_m` (at density 1), `gas`, `aerosol`, `absorber`, `table`: see [`engine::air::optics`] |
+//! | … `profile` | `{ kind = "exponential", scale_height_m }`, `{ kind = "tent", bottom_m, peak_m, top_m }`, `{ kind = "constant", bottom_m, top_m }`, `{ kind = "table", altitude_m = [..], density = [..] }`; a `gas` needs none |
+//! | … `phase` | `{ kind = "rayleigh" }`, `"henyey_greenstein"` and `"cornette_shanks"` with `g`, `"elek_rayleigh"`, `"isotropic"`, `{ kind = "table", angle_deg = [..], value = [..] }`; a `gas` or an `absorber` needs none |
+//! | `[thickness]`, `[limb_table]`, `[view_table]`, `[gradient]` | *optional*, the settings of that model; every key may be left out: see [`engine::air::model`] |
 //! | `[physics]` | *optional*, what drags: `kind = "us76"` (Earth) or `"hydrostatic"`; `drag_top_m`; hydrostatic also `temperature_k`, `pressure_pa`, `molar_mass_kg_mol`, `heat_capacity_ratio`, *optional* `lapse = [{ to_altitude_m, k_per_m }]`. Gravity is the body's own |
 //!
 //! # `system.toml`
@@ -57,11 +65,13 @@
 //! `name`, `gm_km3_s2`, `position_km`, `velocity_km_s` from the barycentre at the epoch of the star.
 //!
 //! # Here
-//! [`system`], [`ship`] and [`start`] load; [`reader`] takes keys out of a [`tree`] and gathers [`fault`]s; [`overlay`] finds and reads
-//! files; [`reload`] watches them. Not here: what a World does with it all.
+//! [`system`], [`ship`] and [`start`] load; [`reader`] takes keys out of a [`tree`] and gathers [`fault`]s; [`fields`] are keys as data, of which
+//! reader, [`schema`] and editor are made; [`overlay`] finds and reads files, [`write`](mod@write) changes them; [`reload`] watches them. Not
+//! here: what a World does with it all.
 
 pub mod atmosphere;
 pub mod body;
+pub mod draft;
 pub mod fault;
 pub mod fields;
 pub mod overlay;
@@ -74,6 +84,7 @@ pub mod ship;
 pub mod start;
 pub mod system;
 pub mod tree;
+pub mod write;
 
 pub use fault::{AssetErrors, Fault};
 pub use reload::Reloader;
@@ -82,6 +93,8 @@ use crate::world::World;
 use crate::world::ship::spec::ShipSpec;
 use crate::world::start::StartSpec;
 use crate::world::system::System;
+use atmosphere::AirSpec;
+use engine::light::spectrum::Starlight;
 use overlay::Overlay;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -102,6 +115,11 @@ impl Assets {
     /// A system; `progress` hears how much is done, 0 … 1, and of what.
     pub fn system(&self, key: &str, progress: &(dyn Fn(f32, &str) + Sync)) -> Result<Arc<System>, AssetErrors> {
         system::load_system(&self.overlay, key, progress)
+    }
+
+    /// The air of a body under a star, without the system around it; the default where it has none.
+    pub fn air(&self, body: &str, star: &Starlight) -> Result<AirSpec, AssetErrors> {
+        system::load_air(&self.overlay, body, star)
     }
 
     /// A system with its airs read anew, everything else as it is.
@@ -170,17 +188,17 @@ impl Assets {
         system::bodies(&self.overlay)
     }
 
-    /// One body checked: its own files, and the systems that list it; these are told.
-    pub fn check_body(&self, key: &str) -> Result<Vec<String>, AssetErrors> {
+    /// One body checked: its own files, and the systems that list it. Those, and what is hardly meant.
+    pub fn check_body(&self, key: &str) -> Result<(Vec<String>, Vec<String>), AssetErrors> {
         let systems: Vec<String> = self.systems().into_iter().filter(|s| system::lists(&self.overlay, s, key)).collect();
-        let mut errors = AssetErrors::default();
+        let (mut errors, mut warnings) = (AssetErrors::default(), Vec::new());
         if systems.is_empty() {
-            errors.keep(system::load_body(&self.overlay, key));
+            warnings.extend(errors.keep(system::load_body(&self.overlay, key)).into_iter().flatten());
         }
         for system in &systems {
-            errors.keep(self.system(system, &|_, _| ()));
+            warnings.extend(errors.keep(self.system(system, &|_, _| ())).into_iter().flat_map(|s| s.warnings.clone()));
         }
-        errors.or(systems)
+        errors.or((systems, warnings))
     }
 
     /// The ships there are.
@@ -188,13 +206,19 @@ impl Assets {
         self.overlay.names("ships", Some(".toml")).into_iter().collect()
     }
 
-    /// Everything, checked: what `check-assets` does.
-    pub fn check(&self) -> Result<(), AssetErrors> {
-        let mut errors = AssetErrors::default();
+    /// Everything, checked: what `check-assets` does. What is hardly meant comes back.
+    pub fn check(&self) -> Result<Vec<String>, AssetErrors> {
+        let (mut errors, mut warnings) = (AssetErrors::default(), Vec::new());
         let mut systems = std::collections::BTreeMap::new();
         for key in self.systems() {
             let system = errors.keep(self.system(&key, &|_, _| ()));
+            warnings.extend(system.iter().flat_map(|s| s.warnings.iter().cloned()));
             systems.insert(key, system);
+        }
+        for body in self.bodies() {
+            if !systems.keys().any(|s| system::lists(&self.overlay, s, &body)) {
+                warnings.extend(errors.keep(system::load_body(&self.overlay, &body)).into_iter().flatten());
+            }
         }
         for key in self.ships() {
             errors.keep(self.ship(&key));
@@ -213,9 +237,9 @@ impl Assets {
                 errors.keep(self.world(&key, &start, system, ship));
             }
         }
-        errors.or(())
+        errors.or(warnings)
     }
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

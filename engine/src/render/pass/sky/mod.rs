@@ -236,12 +236,12 @@ impl Sky {
     }
 
     /// Puts what the models in view say of it in the place of what the air tables say: `tables` are those.
-    pub fn record_daylight(&self, f: &mut FrameContext<'_>, tables: &[Texture; 3]) {
+    pub fn record_daylight(&self, f: &mut FrameContext<'_>, tables: [&Texture; 2]) {
         let (gpu, scene, slots) = (f.gpu, f.scene, f.air_slots.clone());
         let mut pass = f.compute("sky_daylight");
         for (choice, painter) in self.by_own_light(scene) {
             let Some(slot) = slots.get(choice.body as usize).copied().flatten() else { continue };
-            let [sun, sky] = [&tables[0], &tables[2]].map(|t| t.layer_view(slot));
+            let [sun, sky] = tables.map(|t| t.layer_view(slot));
             painter.light_ground(gpu, &mut pass, choice.id, [&sun, &sky]);
         }
     }

@@ -6,9 +6,9 @@
 //! shell has no mesh at all. Unless the full sizes are asked for, pictures are a quarter as wide and high and tables a quarter as long
 //! each way, so that a software device is done in a minute.
 
-use super::orbit_rows;
 use crate::cli::BenchAirArgs;
 use crate::mode::Error;
+use crate::mode::bench::orbit_rows;
 use crate::mode::shot::ShotError;
 use crate::mode::studio::StudioError;
 use engine::air::model::ViewTable;

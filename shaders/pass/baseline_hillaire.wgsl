@@ -1,6 +1,6 @@
-// Table of multiple scattering [Hillaire 2020, "A Scalable and Production Ready Sky and Atmosphere Rendering Technique", §5.5]:
+// A baseline for `bench air`, not used by any picture: the table of isotropic multiple scattering [Hillaire 2020, "A Scalable and Production Ready Sky and Atmosphere Rendering Technique", §5.5]:
 // second-order light averaged over 64 directions, times the geometric series of all further orders. One workgroup per texel.
-// Rust side: engine/src/render/pass/air_tables.rs.
+// What the model `physical` does instead: air_orders.wgsl.
 
 #include "lib/air.wgsl"
 #include "lib/sunlight.wgsl"
@@ -11,9 +11,16 @@
 @group(0) @binding(3) var transmittance: texture_2d_array<f32>;
 @group(0) @binding(4) var linear: sampler;
 
+const MULTIPLE_SIZE: vec2<f32> = vec2<f32>(64.0, 32.0);
 const DIRECTIONS: u32 = 64u;
 const PANELS: u32 = 4u;
 const SUN_RAD: f32 = 0.0047;
+
+// Mapped by √altitude and by the signed root of the sun's cosine.
+fn lit_point(air: Air, x: vec2<f32>) -> vec2<f32> {
+    let root = 2.0 * x.x - 1.0;
+    return vec2<f32>(x.y * x.y * air.shape.y, root * abs(root));
+}
 
 var<workgroup> second: array<vec3<f32>, DIRECTIONS>;
 var<workgroup> share: array<vec3<f32>, DIRECTIONS>;
