@@ -5,9 +5,11 @@
 
 mod bench;
 mod eclipses;
+mod sky;
 
-pub use bench::{BenchEphemerisArgs, BenchKeplerArgs, BenchOrbitArgs, BenchShipsArgs};
+pub use bench::{BenchAirArgs, BenchEphemerisArgs, BenchKeplerArgs, BenchOrbitArgs, BenchShipsArgs};
 pub use eclipses::ProbeEclipsesArgs;
+pub use sky::ProbeSkyArgs;
 
 use clap::{Args, Parser, Subcommand};
 use engine::time::SimTime;
@@ -256,6 +258,10 @@ pub enum Probe {
     #[command(after_help = "Example:\n  syzygy probe eclipses --on earth --by moon --from 2461000 --to 2461500 --at 43.37,-8.40\n  \
         syzygy probe eclipses --on moon --by earth --from 2461000 --to 2462000")]
     Eclipses(ProbeEclipsesArgs),
+    /// Spectral radiance along the rays of a CSV file: the same rows with L, W m⁻² sr⁻¹ nm⁻¹ (no ground, no sun's disc)
+    #[command(after_help = "Example:\n  syzygy probe sky --planet tests/reference/planets/earth.toml \
+        --rays tests/reference/sky_radiance_sample.csv --model reference --out sky.csv")]
+    Sky(Box<ProbeSkyArgs>),
 }
 
 /// What can be measured.
@@ -264,6 +270,9 @@ pub enum Bench {
     /// Every integrator on every case of the reference data: error against CPU time and evaluations
     #[command(after_help = "Example:\n  syzygy bench orbit --case LEO_1000orb --method gauss_radau --json leo.json --plot plots")]
     Orbit(BenchOrbitArgs),
+    /// How far the colours of each air are from those of all wavelengths, and Elek's test flight
+    #[command(after_help = "Example:\n  syzygy bench air --spectral --json colours.json\n  syzygy bench air --elek --json elek.json")]
+    Air(BenchAirArgs),
     /// What choosing the terms of gravity by an error bound costs in error and saves in time
     #[command(after_help = "Example:\n  syzygy bench ships --json ships.json")]
     Ships(BenchShipsArgs),

@@ -1,15 +1,15 @@
 // Air for other passes: how sunlight is reddened on its way to a point, and how the sky lights the ground.
 //
 // The tables are 2-D arrays, a layer per slot (Body.ids.z; −1: no air, ask nothing). Bind from group 1: @binding(0) var<uniform>
-// airs: Airs; @binding(1) transmittance, @binding(2) multiple, @binding(3) irradiance: texture_2d_array<f32>; @binding(4) sampler.
+// airs: Airs; @binding(1) transmittance, @binding(3) irradiance: texture_2d_array<f32>; @binding(2) orders: texture_3d<f32>; @binding(4) sampler.
 // Altitudes are above the datum in m and may be negative; `mu_s` is the cosine of the sun's zenith angle at the point.
 // Made by engine/src/render/pass/air_tables.rs. Not here: light along a ray of sight (lib/air_march.wgsl); all of it together for a surface (lib/daylight.wgsl).
 
-#include "lib/air_path.wgsl"
+#include "lib/air_orders.wgsl"
+#include "lib/air_quadrature.wgsl"
 
 const TRANSMITTANCE_SIZE: vec2<f32> = vec2<f32>(256.0, 64.0);
-const MULTIPLE_SIZE: vec2<f32> = vec2<f32>(64.0, 32.0);
-const IRRADIANCE_SIZE: vec2<f32> = vec2<f32>(64.0, 16.0);
+const IRRADIANCE_SIZE: vec2<f32> = vec2<f32>(32.0, 16.0);  // ORDERS_SUNS, ORDERS_ALTITUDES
 
 // 0…1 to the centres of the first and last texel, and back.
 fn table_uv(x: vec2<f32>, size: vec2<f32>) -> vec2<f32> {
@@ -45,31 +45,16 @@ fn transmittance_point(air: Air, x: vec2<f32>) -> vec3<f32> {
     return vec3<f32>(h, select(clamp(mu, -1.0, 1.0), 1.0, reach < 1e-3), reach);
 }
 
-// Multiple scattering and irradiance are mapped by √altitude and by the signed root of the sun's cosine: fine at the terminator.
-fn lit_x(air: Air, altitude: f32, mu_s: f32) -> vec2<f32> {
-    return vec2<f32>(0.5 + 0.5 * sign(mu_s) * sqrt(min(abs(mu_s), 1.0)), sqrt(clamp(altitude / air.shape.y, 0.0, 1.0)));
-}
-fn lit_point(air: Air, x: vec2<f32>) -> vec2<f32> {
-    let root = 2.0 * x.x - 1.0;
-    return vec2<f32>(x.y * x.y * air.shape.y, root * abs(root));
-}
-
 // Transmittance from a point to the top of the air towards the sun; below the horizon: that of the horizon.
 fn air_sun_transmittance(air: Air, table: texture_2d_array<f32>, linear: sampler, slot: i32, altitude: f32, mu_s: f32) -> vec3<f32> {
     let uv = table_uv(transmittance_x(air, altitude, mu_s), TRANSMITTANCE_SIZE);
     return textureSampleLevel(table, linear, uv, slot, 0.0).rgb;
 }
 
-// Light that arrives at a point after two or more scatterings, averaged over all directions, per unit of illuminance above the air, sr⁻¹.
-// The table holds square roots: half floats then reach into deep twilight.
-fn air_multiple(air: Air, table: texture_2d_array<f32>, linear: sampler, slot: i32, altitude: f32, mu_s: f32) -> vec3<f32> {
-    let root = textureSampleLevel(table, linear, table_uv(lit_x(air, altitude, mu_s), MULTIPLE_SIZE), slot, 0.0).rgb;
-    return root * root;
-}
-
 // Illuminance by the sky on horizontal ground, per unit of the sun's illuminance above the air. On a slope whose normal makes
-// the cosine c with the zenith, take (0.5 + 0.5 c) of it.
+// the cosine c with the zenith, take (0.5 + 0.5 c) of it. The table holds fourth roots, by the coordinates of further orders.
 fn air_sky_irradiance(air: Air, table: texture_2d_array<f32>, linear: sampler, slot: i32, altitude: f32, mu_s: f32) -> vec3<f32> {
-    let root = textureSampleLevel(table, linear, table_uv(lit_x(air, altitude, mu_s), IRRADIANCE_SIZE), slot, 0.0).rgb;
-    return root * root;
+    let x = vec2<f32>(orders_sun_x(air, horizon_dip(air.shape.x, altitude), mu_s), orders_altitude_y(air, altitude));
+    let root = textureSampleLevel(table, linear, table_uv(x, IRRADIANCE_SIZE), slot, 0.0).rgb;
+    return root * root * root * root;
 }

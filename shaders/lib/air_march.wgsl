@@ -1,11 +1,16 @@
-// Light along a ray through air: single scattering marched, further orders from the table, sun and shadow at every step.
+// Light along a ray through air: single scattering exact along the ray, further orders from the table, by lib/air_quadrature.wgsl.
 //
-// Each step takes densities by Simpson's rule, the sun at its middle, the planet's own shadow averaged over its length, and integrates
-// a constant source exactly: ∫ S e^(−σt) dt = S (1 − e^(−σΔ)) / σ [Hillaire 2015, "Physically Based and Unified Volumetric Rendering"].
+// The planet's own shadow is a cone that no light enters: stretches end at its edge, and so at the edges of the shadow that another
+// world throws. Within a stretch the visible share of the sun's disc is taken at each point.
 
 #include "lib/air.wgsl"
+#include "lib/air_shadow.wgsl"
 #include "lib/sky_pixel.wgsl"
-#include "lib/sunlight.wgsl"
+
+// Set to false in pipelines for airs on which no shadow of another world can fall.
+override AIR_ECLIPSES: bool = true;
+
+const ONES: vec4<f32> = vec4<f32>(1.0);
 
 // What lights the air.
 struct AirSun {
@@ -15,50 +20,75 @@ struct AirSun {
     multiple: f32,  // 1; 0 leaves further orders out
 }
 
-// From the path's start to `end` metres further, in `count` steps. `ray` is the direction of sight, `star` the star's sphere.
-fn air_march(
-    air: Air, transmittance: texture_2d_array<f32>, multiple: texture_2d_array<f32>, linear: sampler, slot: i32,
-    path: AirPath, end: f32, ray: vec3<f32>, sun: AirSun, body: Body, star: vec4<f32>, count: u32,
-) -> AirLight {
-    let phase = air_phase(air, dot(ray, sun.direction)) * sun.single;
-    let up_sun = path.radius * dot(path.up, sun.direction);
-    let ray_sun = dot(ray, sun.direction);
-    let steps = air_steps(path, end);
-    let shaded = body.ids.y > 0;
-    var out = AirLight(vec3<f32>(0.0), vec3<f32>(1.0));
-    var from_s = 0.0;
-    var from_density = air_density(air, path.altitude);
-    var from_sun = sun_elevation(air.shape.x, path.altitude, up_sun / path.radius);
-    for (var i = 1u; i <= count; i++) {
-        let to_s = air_step(steps, f32(i) / f32(count));
-        let s = 0.5 * (from_s + to_s);
-        let altitude = air_altitude(air, path, s);
-        let mu_s = (up_sun + s * ray_sun) / (air.shape.x + altitude);
-        let to_altitude = air_altitude(air, path, to_s);
-        let to_density = air_density(air, to_altitude);
-        let to_sun = sun_elevation(air.shape.x, to_altitude, (up_sun + to_s * ray_sun) / (air.shape.x + to_altitude));
-        let density = (from_density + 4.0 * air_density(air, altitude) + to_density) / 6.0;
+// All that is the same at every point of a ray.
+struct AirRay {
+    path: AirPath,
+    ray: vec3<f32>,
+    up_sun: f32,       // r₀ μₛ at the start
+    ray_sun: f32,
+    phase: vec4<f32>,
+}
 
-        var eclipse = Eclipse(1.0, 1.0);
-        if shaded {
-            eclipse = eclipse_at(body, star, ray * (path.start + s), air.shape.y);
-        }
-        let direct = visible_between(sun.angular_radius, from_sun, to_sun) * eclipse.direct;
-        var source = air.scattering * density * (sun.multiple * eclipse.diffuse)
-            * air_multiple(air, multiple, linear, slot, altitude, mu_s);
-        if direct > 0.0 {
-            source += air.scattering * (density * phase) * direct
-                * air_sun_transmittance(air, transmittance, linear, slot, altitude, mu_s);
-        }
-        let extinction = air.extinction * density;
-        let depth = extinction * (to_s - from_s);
-        let kept = exp(-depth);
-        let length = select((1.0 - kept) / max(extinction, vec3<f32>(1e-20)), (to_s - from_s) * (1.0 - 0.5 * depth), depth < vec3<f32>(1e-3));
-        out.radiance += out.transmittance * source * length;
-        out.transmittance *= kept;
-        from_s = to_s;
-        from_density = to_density;
-        from_sun = to_sun;
+// Light scattered towards the eye at a point, m⁻¹ sr⁻¹ per unit of illuminance. `phased` and `scattering` are the point's scattering
+// with and without the classes' phase functions, per channel.
+fn air_source(
+    air: Air, transmittance: texture_2d_array<f32>, orders: texture_3d<f32>, linear: sampler, slot: i32,
+    along: AirRay, sun: AirSun, phased: vec3<f32>, scattering: vec3<f32>, s: f32, altitude: f32, eclipse: Eclipse,
+) -> vec3<f32> {
+    let mu_s = (along.up_sun + s * along.ray_sun) / (air.shape.x + altitude);
+    let lit = visible_above_limb(sun.angular_radius, sun_elevation(air.shape.x, altitude, mu_s));
+    return phased * (lit * eclipse.direct) * air_sun_transmittance(air, transmittance, linear, slot, altitude, mu_s)
+        + scattering * (sun.multiple * eclipse.diffuse)
+            * air_orders(air, orders, linear, slot, altitude, mu_s, (along.path.slope + s) / (air.shape.x + altitude), along.ray_sun);
+}
+
+// From the path's start to `end` metres further; `count` points on a long stretch. `ray` is the direction of sight, `star` the star's sphere.
+fn air_march(
+    air: Air, media: texture_2d_array<f32>, transmittance: texture_2d_array<f32>, orders: texture_3d<f32>, linear: sampler,
+    slot: i32, path: AirPath, end: f32, ray: vec3<f32>, sun: AirSun, body: Body, star: vec4<f32>, count: u32,
+) -> AirLight {
+    let cosine = dot(ray, sun.direction);
+    let along = AirRay(
+        path, ray, path.radius * dot(path.up, sun.direction), cosine, air_phase(air, media, slot, cosine) * sun.single);
+    let night = air_night(air.shape.x, path, along.up_sun, cosine, sun.angular_radius, end);
+    var shade = AirShade(vec4<f32>(-1.0), false);
+    if AIR_ECLIPSES && body.ids.y > 0 {
+        shade = air_shade(body, star, ray * path.start, ray, end, FAR_RING.x * air.shape.y);
     }
+    let most = max(count / 4u, 1u);
+
+    var out = AirLight(vec3<f32>(0.0), vec3<f32>(1.0));
+    var depth = vec3<f32>(0.0);
+    var begin = 0.0;
+    for (var k = 0u; k < 24u && begin < end; k++) {
+        let next = air_next_cut(air, path, begin, end, vec4<f32>(night, -1.0, -1.0), shade.cuts);
+        let middle = 0.5 * (begin + next);
+        let dark = middle > night.x && middle < night.y;
+        let panels = select(most, max(most / 2u, 1u), dark);
+        for (var i = 0u; i < panels; i++) {
+            let n = air_nodes(air, path, begin, next, i, panels);
+            let m0 = air_matter(air, media, slot, n.altitude.x);
+            let m1 = air_matter(air, media, slot, n.altitude.y);
+            let m2 = air_matter(air, media, slot, n.altitude.z);
+            let m3 = air_matter(air, media, slot, n.altitude.w);
+            let depths = mat4x3<f32>(m0.extinction * n.span.x, m1.extinction * n.span.y, m2.extinction * n.span.z, m3.extinction * n.span.w);
+            let run = depths * GAUSS_RUN;
+            let phased = mat4x3<f32>(m0.scattering * along.phase, m1.scattering * along.phase, m2.scattering * along.phase, m3.scattering * along.phase);
+            let all = mat4x3<f32>(m0.scattering * ONES, m1.scattering * ONES, m2.scattering * ONES, m3.scattering * ONES);
+            for (var j = 0u; j < 4u; j++) {
+                let one = select(vec4<f32>(0.0), ONES, vec4<u32>(0u, 1u, 2u, 3u) == vec4<u32>(j));
+                let s = dot(n.s, one);
+                var eclipse = Eclipse(1.0, 1.0);
+                if AIR_ECLIPSES && shade.falls {
+                    eclipse = eclipse_at(body, star, ray * (path.start + s), air.shape.y);
+                }
+                out.radiance += (dot(n.span * GAUSS_WEIGHT, one) * exp(-depth - run * one))
+                    * air_source(air, transmittance, orders, linear, slot, along, sun, phased * one, all * one, s, dot(n.altitude, one), eclipse);
+            }
+            depth += depths * GAUSS_WEIGHT;
+        }
+        begin = next;
+    }
+    out.transmittance = exp(-depth);
     return out;
 }

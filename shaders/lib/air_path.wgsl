@@ -61,45 +61,12 @@ fn air_reach(b: f32, c: f32) -> f32 {
     return root - b;
 }
 
-// Altitude at distance s from the start.
+// Altitude at distance s from the start; of four distances at once.
 fn air_altitude(air: Air, path: AirPath, s: f32) -> f32 {
+    return air_altitudes(air, path, vec4<f32>(s)).x;
+}
+fn air_altitudes(air: Air, path: AirPath, s: vec4<f32>) -> vec4<f32> {
     let bottom = air.shape.x;
     let q = path.altitude * (2.0 * bottom + path.altitude) + s * (2.0 * path.slope + s);
-    return q / (bottom + sqrt(max(bottom * bottom + q, 0.0)));
-}
-
-// How the steps of a march lie on a stretch from 0 to `end`: squares of equal parts counted from the lowest point, where air is
-// densest, so that steps grow with the distance from it.
-struct AirSteps {
-    low: f32,
-    scale: f32,
-    offset: f32,
-}
-fn air_steps(path: AirPath, end: f32) -> AirSteps {
-    let low = clamp(-path.slope, 0.0, end);
-    let before = sqrt(low);
-    let both = before + sqrt(end - low);
-    return AirSteps(low, both * both, before / max(both, 1e-12));
-}
-// x from 0 to 1.
-fn air_step(steps: AirSteps, x: f32) -> f32 {
-    let y = x - steps.offset;
-    return max(steps.low + steps.scale * y * abs(y), 0.0);
-}
-
-// Optical depth from 0 to `end`, by Simpson's rule on each step.
-fn air_optical_depth(air: Air, path: AirPath, end: f32, count: u32) -> vec3<f32> {
-    let steps = air_steps(path, end);
-    var sum = vec4<f32>(0.0);
-    var from_s = 0.0;
-    var from_density = air_density(air, path.altitude);
-    for (var i = 1u; i <= count; i++) {
-        let to_s = air_step(steps, f32(i) / f32(count));
-        let middle = air_density(air, air_altitude(air, path, 0.5 * (from_s + to_s)));
-        let to_density = air_density(air, air_altitude(air, path, to_s));
-        sum += (from_density + 4.0 * middle + to_density) * ((to_s - from_s) / 6.0);
-        from_s = to_s;
-        from_density = to_density;
-    }
-    return air.extinction * sum;
+    return q / (bottom + sqrt(max(bottom * bottom + q, vec4<f32>(0.0))));
 }

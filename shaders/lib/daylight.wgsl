@@ -35,7 +35,7 @@ fn daylight(
         // Above the air its limb still reddens a low sun: the path to the star may cross it.
         let path = air_path(air, up, altitude, body.sun.xyz);
         if path.start >= 0.0 {
-            out.sun *= exp(-air_optical_depth(air, path, path.exit, 12u));
+            out.sun *= air_sun_transmittance(air, transmittance, linear, slot, air.shape.y, path.slope / path.radius);
         }
     }
     return out;

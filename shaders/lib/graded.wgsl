@@ -20,3 +20,16 @@ fn graded_step(steps: Graded, x: f32) -> f32 {
     let y = x - steps.offset;
     return max(steps.low + steps.scale * y * abs(y), 0.0);
 }
+
+// The path of an eye that stands on the datum or under it and looks down where nothing was drawn: `exit` is 0 on the datum, which it sees
+// at once; under it the ray is taken for a level one, as from a basin whose floor was not drawn.
+fn graded_above(air: Air, path: AirPath, datum: bool) -> AirPath {
+    var out = path;
+    if datum && path.altitude <= 0.0 && path.slope < 0.0 && path.start <= 0.0 {
+        out.slope = 0.0;
+        let top = air.shape.y * (2.0 * air.shape.x + air.shape.y);
+        out.exit = select(0.0, air_reach(0.0, top - path.altitude * (2.0 * air.shape.x + path.altitude)), path.altitude < -1.0);
+        out.ground = -1.0;
+    }
+    return out;
+}

@@ -1,38 +1,95 @@
-// The medium: up to four layers of one atmosphere side by side in vectors. Twin of engine/src/air/medium.rs; the struct is
-// mirrored in engine/src/scene/gpu_data.rs. Lengths in m, coefficients in m⁻¹ per linear sRGB channel.
+// The medium: an atmosphere as at most four classes that scatter side by side. Lengths in m, coefficients in m⁻¹ per channel.
+//
+// Twin of engine/src/air/medium/classes.rs; the struct is mirrored in engine/src/scene/gpu_air.rs. Up to four analytic layers are formulas
+// of altitude; any other medium is a table: `media`, a layer per slot, with rows over altitude (MEDIA_ROWS − 1 of them: scattering of the four
+// classes, extinction) and a last one over angle (phase functions, a class per channel). A pipeline that is drawn with for formulas alone sets
+// MEDIA_TABLES to false and does not even carry the branch.
 
 #include "lib/phase.wgsl"
 
+override MEDIA_TABLES: bool = true;
+
 const MAX_AIRS: u32 = 16u;
 const AIR_FLOOR_M: f32 = 10000.0;  // Medium::FLOOR_M
+const MEDIA_COLUMNS: u32 = 1024u;
+const MEDIA_EXTINCTION: u32 = 4u;
+const MEDIA_PHASE: u32 = 5u;
 
 struct Air {
-    shape: vec4<f32>,           // radius of the datum, altitude of the top, 0, 0
-    albedo: vec4<f32>,          // rgb: of the ground
-    scattering: mat4x3<f32>,    // a column per layer
+    shape: vec4<f32>,           // radius of the datum, altitude of the top, 1 where the medium is a table, 1 where density jumps
+    albedo: vec4<f32>,          // rgb: of the ground; w: root of floor / top, for tables
+    scattering: mat4x3<f32>,    // a column per class at density 1
     extinction: mat4x3<f32>,
-    inverse_height: vec4<f32>,  // 1 / scale height
+    inverse_height: vec4<f32>,  // 1 / scale height; 0: the profile is a tent or a step
     tent_bottom: vec4<f32>,
-    tent_rise: vec4<f32>,       // 1 / (peak − bottom); 0: the profile is exponential
+    tent_rise: vec4<f32>,       // 1 / (peak − bottom); of a step: so much that it is one
     tent_top: vec4<f32>,
     tent_fall: vec4<f32>,       // 1 / (top − peak)
-    asymmetry: vec4<f32>,       // of the phase function; PHASE_RAYLEIGH
+    phases: Phases,
+    jumps_low: vec4<f32>,       // altitudes where density jumps; −1e9: none
+    jumps_high: vec4<f32>,
+    orders: vec4<f32>,          // how the sun's height is mapped in the table of further orders: SunMap of engine/src/air/model/orders.rs, 0
 }
 
 struct Airs {
     list: array<Air, MAX_AIRS>,
 }
 
-// Relative density of each layer.
-fn air_density(air: Air, altitude: f32) -> vec4<f32> {
-    let h = max(altitude, -AIR_FLOOR_M);
-    let exponential = exp(-h * air.inverse_height);
-    let tent = max(min((h - air.tent_bottom) * air.tent_rise, (air.tent_top - h) * air.tent_fall), vec4<f32>(0.0));
-    return select(exponential, tent, air.tent_rise > vec4<f32>(0.0));
+// What light meets at a point.
+struct AirMatter {
+    scattering: mat4x3<f32>,  // a column per class
+    extinction: vec3<f32>,
 }
 
-// Phase function of each layer.
-fn air_phase(air: Air, c: f32) -> vec4<f32> {
-    let g = air.asymmetry;
-    return vec4<f32>(layer_phase(g.x, c), layer_phase(g.y, c), layer_phase(g.z, c), layer_phase(g.w, c));
+// Relative density of each class of an analytic medium.
+fn air_density(air: Air, altitude: f32) -> vec4<f32> {
+    let h = max(altitude, -AIR_FLOOR_M);
+    let tent = clamp(min((h - air.tent_bottom) * air.tent_rise, (air.tent_top - h) * air.tent_fall), vec4<f32>(0.0), vec4<f32>(1.0));
+    return select(exp(-h * air.inverse_height), tent, air.tent_rise > vec4<f32>(0.0));
+}
+
+// A row of the table at a column that need not be whole.
+fn media_at(media: texture_2d_array<f32>, slot: i32, row: u32, column: f32) -> vec4<f32> {
+    let at = clamp(column, 0.0, f32(MEDIA_COLUMNS - 1u));
+    let low = min(u32(at), MEDIA_COLUMNS - 2u);
+    let a = textureLoad(media, vec2<u32>(low, row), slot, 0);
+    return mix(a, textureLoad(media, vec2<u32>(low + 1u, row), slot, 0), at - f32(low));
+}
+// Columns go by the signed root of altitude, from AIR_FLOOR_M below the datum to the top.
+fn media_column(air: Air, altitude: f32) -> f32 {
+    let root = sign(altitude) * sqrt(abs(altitude) / air.shape.y);
+    return (root + air.albedo.w) / (1.0 + air.albedo.w) * f32(MEDIA_COLUMNS - 1u);
+}
+
+fn air_extinction(air: Air, media: texture_2d_array<f32>, slot: i32, altitude: f32) -> vec3<f32> {
+    if MEDIA_TABLES && air.shape.z > 0.0 {
+        return media_at(media, slot, MEDIA_EXTINCTION, media_column(air, altitude)).rgb;
+    }
+    return air.extinction * air_density(air, altitude);
+}
+
+fn air_matter(air: Air, media: texture_2d_array<f32>, slot: i32, altitude: f32) -> AirMatter {
+    if MEDIA_TABLES && air.shape.z > 0.0 {
+        let column = media_column(air, altitude);
+        return AirMatter(
+            mat4x3<f32>(
+                media_at(media, slot, 0u, column).rgb, media_at(media, slot, 1u, column).rgb,
+                media_at(media, slot, 2u, column).rgb, media_at(media, slot, 3u, column).rgb),
+            media_at(media, slot, MEDIA_EXTINCTION, column).rgb);
+    }
+    let d = air_density(air, altitude);
+    return AirMatter(
+        mat4x3<f32>(air.scattering[0] * d.x, air.scattering[1] * d.y, air.scattering[2] * d.z, air.scattering[3] * d.w),
+        air.extinction * d);
+}
+
+// Phase function of each class at the cosine of the scattering angle. Columns of the table go by the root of the angle.
+fn air_phase(air: Air, media: texture_2d_array<f32>, slot: i32, c: f32) -> vec4<f32> {
+    if MEDIA_TABLES && air.shape.z > 0.0 {
+        // acos loses the last of a small angle: there it is 2 asin √(½(1 − c)).
+        let half = sqrt(max(0.5 - 0.5 * c, 0.0));
+        let angle = select(acos(clamp(c, -1.0, 1.0)), 2.0 * half * (1.0 + half * half / 6.0), half < 0.1);
+        return media_at(media, slot, MEDIA_PHASE, sqrt(angle / 3.14159265359) * f32(MEDIA_COLUMNS - 1u));
+    }
+    return phase_values(air.phases, c);
 }

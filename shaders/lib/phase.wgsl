@@ -1,21 +1,21 @@
-// Phase functions, sr⁻¹: the integral over the sphere is 1. Twin of `Phase::value` in engine/src/air/medium.rs.
+// Phase functions, sr⁻¹. Twin of `Phase::value` in engine/src/air/medium/phase.rs.
+//
+// Every analytic one is a polynomial of the cosine c times Henyey & Greenstein's lobe: (x + y c + z c²) (1 − g²) / (4π (1 + g² − 2gc)^(3/2)).
+// Rayleigh: ¾ (1 + c²), g = 0. Cornette–Shanks [1992, eq. 8]: 1.5 (1 + c²) / (2 + g²). Henyey–Greenstein [1941, eq. 2], isotropic: 1.
+// Elek [2008, eq. 3.2]: 0.98 + 0.35 c, g = 0. So four classes are four lanes and no branch.
 
-const PHASE_RAYLEIGH: f32 = 2.0;  // stands for an asymmetry: no Cornette–Shanks lobe has one beyond ±1
-
-fn rayleigh_phase(c: f32) -> f32 {
-    return 0.0596831036595 * (1.0 + c * c);
+struct Phases {
+    g: vec4<f32>,
+    x: vec4<f32>,
+    y: vec4<f32>,
+    z: vec4<f32>,
 }
 
-// [Cornette & Shanks 1992, eq. 8]
-fn cornette_shanks_phase(g: f32, c: f32) -> f32 {
-    let d = max(1.0 + g * g - 2.0 * g * c, 1e-6);
-    return 0.119366207319 * (1.0 - g * g) * (1.0 + c * c) / ((2.0 + g * g) * d * sqrt(d));
-}
-
-// By the number that stands for a layer's phase function.
-fn layer_phase(asymmetry: f32, c: f32) -> f32 {
-    if asymmetry > 1.5 {
-        return rayleigh_phase(c);
-    }
-    return cornette_shanks_phase(asymmetry, c);
+fn phase_values(p: Phases, c: f32) -> vec4<f32> {
+    // (1 − |g|)² + 2|g|(1 ∓ c): nothing cancels near the peak.
+    let size = abs(p.g);
+    let gap = vec4<f32>(1.0) - size;
+    let d = gap * gap + 2.0 * size * (vec4<f32>(1.0) - sign(p.g) * c);
+    let lobe = gap * (vec4<f32>(1.0) + size) / (12.5663706144 * max(d * sqrt(d), vec4<f32>(1e-12)));
+    return (p.x + c * (p.y + c * p.z)) * lobe;
 }

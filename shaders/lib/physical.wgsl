@@ -4,7 +4,7 @@
 #include "lib/air_march.wgsl"
 
 fn physical_light(
-    body: Body, air: Air, transmittance: texture_2d_array<f32>, multiple: texture_2d_array<f32>, linear: sampler,
+    body: Body, air: Air, media: texture_2d_array<f32>, transmittance: texture_2d_array<f32>, orders: texture_3d<f32>, linear: sampler,
     star: vec4<f32>, sky: Sky, view: SkyView,
 ) -> AirLight {
     let path = air_path(air, body.up.xyz, body.up.w, view.ray);
@@ -13,8 +13,6 @@ fn physical_light(
         return AirLight(vec3<f32>(0.0), vec3<f32>(1.0));
     }
     let sun = AirSun(body.sun.xyz, body.sun.w, 1.0, select(1.0, 0.0, (sky.ids.z & SKY_SINGLE) != 0u));
-    // A short way needs few steps; the count grows evenly, and its error is small enough that no edge shows.
-    let share = clamp(end / (0.25 * air.shape.y), 0.0, 1.0);
-    let count = u32(mix(6.0, f32(sky.ids.y), share));
-    return air_march(air, transmittance, multiple, linear, body.ids.z, path, end, view.ray, sun, body, star, count);
+    return air_march(
+        air, media, transmittance, orders, linear, body.ids.z, path, end, view.ray, sun, body, star, sky.ids.y);
 }

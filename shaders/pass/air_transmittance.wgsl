@@ -4,6 +4,7 @@
 
 @group(0) @binding(0) var<uniform> air: Air;
 @group(0) @binding(1) var table: texture_storage_2d<rgba16float, write>;
+@group(0) @binding(2) var media: texture_2d_array<f32>;
 
 @compute @workgroup_size(8, 8)
 fn bake(@builtin(global_invocation_id) id: vec3<u32>) {
@@ -15,6 +16,6 @@ fn bake(@builtin(global_invocation_id) id: vec3<u32>) {
     path.radius = air.shape.x + point.x;
     path.altitude = point.x;
     path.slope = path.radius * point.y;
-    let depth = air_optical_depth(air, path, point.z, 64u);
+    let depth = air_optical_depth(air, media, 0, path, point.z, 8u);
     textureStore(table, id.xy, vec4<f32>(exp(-depth), 1.0));
 }

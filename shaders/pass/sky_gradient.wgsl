@@ -48,6 +48,6 @@ fn probe(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let asked = given[id.x];
     let body = sky_probe_body(bodies.list[sky.ids.x], asked);
-    let light = gradient_light(body, airs.list[0], shell_map, ground_map, sky, sky_probe_view(asked));
+    let light = gradient_light(body, airs.list[u32(body.ids.z)], shell_map, ground_map, sky, sky_probe_view(asked));
     found[id.x] = ProbeLight(vec4<f32>(light.radiance, 0.0), vec4<f32>(light.transmittance, 1.0));
 }

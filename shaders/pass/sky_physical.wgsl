@@ -7,8 +7,9 @@
 @group(0) @binding(2) var<uniform> exposure: Exposure;
 @group(1) @binding(0) var<uniform> airs: Airs;
 @group(1) @binding(1) var transmittance: texture_2d_array<f32>;
-@group(1) @binding(2) var multiple: texture_2d_array<f32>;
+@group(1) @binding(2) var orders: texture_3d<f32>;
 @group(1) @binding(4) var linear: sampler;
+@group(1) @binding(8) var media: texture_2d_array<f32>;
 @group(2) @binding(0) var opaque: texture_2d<f32>;
 @group(2) @binding(1) var depth: texture_depth_2d;
 @group(2) @binding(2) var<uniform> sky: Sky;
@@ -35,7 +36,7 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
     let rays = sky_rays(body, air, view);
     var sum = AirLight(vec3<f32>(0.0), vec3<f32>(0.0));
     for (var k = 0u; k < rays; k++) {
-        let light = physical_light(body, air, transmittance, multiple, linear, frame.star, sky, sky_across(body, view, k, rays));
+        let light = physical_light(body, air, media, transmittance, orders, linear, frame.star, sky, sky_across(body, view, k, rays));
         sum.radiance += light.radiance;
         sum.transmittance += light.transmittance;
     }
@@ -50,6 +51,7 @@ fn probe(@builtin(global_invocation_id) id: vec3<u32>) {
     let asked = given[id.x];
     let body = sky_probe_body(bodies.list[sky.ids.x], asked);
     let star = vec4<f32>(frame.star.xyz + body.centre.xyz, frame.star.w);
-    let light = physical_light(body, airs.list[0], transmittance, multiple, linear, star, sky, sky_probe_view(asked));
+    // By the body's slot, not by a constant: Mesa 22's software driver faults on branches that hang on constant places of a uniform.
+    let light = physical_light(body, airs.list[u32(body.ids.z)], media, transmittance, orders, linear, star, sky, sky_probe_view(asked));
     found[id.x] = ProbeLight(vec4<f32>(light.radiance, 0.0), vec4<f32>(light.transmittance, 1.0));
 }

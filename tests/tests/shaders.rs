@@ -77,9 +77,13 @@ fn mirrored_structs_have_the_layout_of_their_twins() {
                 tent_rise,
                 tent_top,
                 tent_fall,
-                asymmetry
+                phases,
+                jumps_low,
+                jumps_high,
+                orders
             }),
         ),
+        ("lib/phase.wgsl", "Phases", fields!(rust::PhasesUniform { g, x, y, z })),
         ("lib/medium.wgsl", "Airs", fields!(rust::AirsUniform { list })),
         ("lib/sky_pixel.wgsl", "Sky", fields!(rust::SkyUniform { ids, settings })),
         ("lib/sky_pixel.wgsl", "ProbeRay", fields!(ProbeRay { up, ray, sun })),

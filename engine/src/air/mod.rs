@@ -14,7 +14,7 @@ pub mod spectral;
 mod us76;
 
 pub use density::{Column, ColumnSpec};
-pub use medium::{Layer, Medium, MediumSpec, Phase, Profile};
+pub use medium::{Class, Classes, Layer, Medium, MediumSpec, Phase, Profile};
 pub use model::{Air, Model};
 
 /// A value outside of what makes sense. The caller adds the file and the line.

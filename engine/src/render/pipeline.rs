@@ -28,6 +28,20 @@ pub const fn texture_entry(binding: u32, dimension: wgpu::TextureViewDimension) 
     }
 }
 
+/// A float texture entry that is loaded, not filtered.
+pub const fn loaded_entry(binding: u32, dimension: wgpu::TextureViewDimension) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: ShaderStages::all(),
+        ty: wgpu::BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Float { filterable: false },
+            view_dimension: dimension,
+            multisampled: false,
+        },
+        count: None,
+    }
+}
+
 /// A depth texture entry.
 pub const fn depth_entry(binding: u32) -> wgpu::BindGroupLayoutEntry {
     wgpu::BindGroupLayoutEntry {

@@ -3,11 +3,11 @@
 //! | group | holds | who makes it |
 //! |---|---|---|
 //! | 0 | 0 `Frame`, 1 `Bodies`, 2 `Exposure` (all uniform; `shaders/lib/frame.wgsl`) | [`Shared`], each frame |
-//! | 1 | 0 airs (uniform), 1 transmittance, 2 multiple scattering, 3 irradiance (2-D arrays, a layer per air slot), 4 linear sampler, 5 shadow map, 6 comparison sampler, 7 shadow (uniform) | [`Shared::light_group`], from the values of the air-table and shadow passes |
+//! | 1 | 0 airs (uniform), 1 transmittance, 2 further orders (3-D), 3 irradiance (1, 3: 2-D arrays, a layer per air slot), 4 linear sampler, 5 shadow map, 6 comparison sampler, 7 shadow (uniform), 8 media (2-D array, loaded) | [`Shared::light_group`], from the values of the air-table and shadow passes |
 //! | 2, 3 | the pass's own | the pass |
 
 use super::maps::MapStore;
-use super::pipeline::{depth_entry, sampler_entry, texture_entry, uniform_entry};
+use super::pipeline::{depth_entry, loaded_entry, sampler_entry, texture_entry, uniform_entry};
 use super::report::{AirReport, FrameReport, PassReport};
 use super::targets::{DEPTH, Targets};
 use crate::gpu::Gpu;
@@ -25,10 +25,12 @@ pub struct AirTables {
     pub airs: wgpu::Buffer,
     /// Transmittance to the star, 2-D array.
     pub transmittance: wgpu::TextureView,
-    /// Multiple scattering, 2-D array.
-    pub multiple: wgpu::TextureView,
+    /// Further orders of scattering, 3-D: `shaders/lib/air_orders.wgsl`.
+    pub orders: wgpu::TextureView,
     /// Illuminance of the sky on horizontal ground, 2-D array.
     pub irradiance: wgpu::TextureView,
+    /// Media that are not formulas (`shaders/lib/medium.wgsl`), 2-D array, not filterable.
+    pub media: wgpu::TextureView,
 }
 
 /// The ship's shadow map, as the later passes see it.
@@ -88,12 +90,13 @@ impl Shared {
             entries: &[
                 uniform_entry(0),
                 texture_entry(1, array),
-                texture_entry(2, array),
+                texture_entry(2, wgpu::TextureViewDimension::D3),
                 texture_entry(3, array),
                 sampler_entry(4, wgpu::SamplerBindingType::Filtering),
                 depth_entry(5),
                 sampler_entry(6, wgpu::SamplerBindingType::Comparison),
                 uniform_entry(7),
+                loaded_entry(8, array),
             ],
         });
         let frame = Uniform::new(d, "Frame", BufferUsages::empty());
@@ -137,12 +140,13 @@ impl Shared {
             entries: &[
                 entry(0, air.airs.as_entire_binding()),
                 entry(1, TextureView(&air.transmittance)),
-                entry(2, TextureView(&air.multiple)),
+                entry(2, TextureView(&air.orders)),
                 entry(3, TextureView(&air.irradiance)),
                 entry(4, Sampler(&self.linear)),
                 entry(5, TextureView(&shadow.depth)),
                 entry(6, Sampler(&self.compare)),
                 entry(7, shadow.uniform.as_entire_binding()),
+                entry(8, TextureView(&air.media)),
             ],
         })
     }

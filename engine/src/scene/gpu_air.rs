@@ -1,16 +1,35 @@
 //! `#[repr(C)]` mirrors of the structs of air in `shaders/`; the rules are those of [`super::gpu_data`].
 
 use super::gpu_data::vec4;
+use crate::air::model::orders::SunMap;
 use crate::air::model::view_space::Spacing;
 use crate::air::model::view_table::{AlphaColour, Split, ViewTable};
-use crate::air::{Medium, Phase, Profile};
+use crate::air::{Classes, Layer, Medium, Phase, Profile};
 use crate::space::relative::{narrow, narrow3};
 use bytemuck::{Pod, Zeroable};
+use glam::DVec3;
 
 /// Atmospheres that the tables hold at once.
 pub const MAX_AIRS: usize = 16;
-/// Stands for an asymmetry where the phase function is Rayleigh's: `PHASE_RAYLEIGH` of `shaders/lib/phase.wgsl`.
-const PHASE_RAYLEIGH: f32 = 2.0;
+/// Columns of the tables of media that are not formulas: `MEDIA_COLUMNS` of `shaders/lib/medium.wgsl`.
+pub const MEDIA_COLUMNS: usize = 1024;
+/// Their rows: scattering of each class, extinction, phase functions.
+pub const MEDIA_ROWS: usize = Classes::MAX + 2;
+/// Altitudes of jumps that an air may have.
+const MAX_JUMPS: usize = 8;
+/// Slope of a tent that is a step, m⁻¹.
+const STEP: f32 = 1e20;
+
+/// `Phases` of `shaders/lib/phase.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[allow(missing_docs)]
+pub struct PhasesUniform {
+    pub g: [f32; 4],
+    pub x: [f32; 4],
+    pub y: [f32; 4],
+    pub z: [f32; 4],
+}
 
 /// `Air` of `shaders/lib/medium.wgsl`.
 #[repr(C)]
@@ -26,7 +45,10 @@ pub struct AirUniform {
     pub tent_rise: [f32; 4],
     pub tent_top: [f32; 4],
     pub tent_fall: [f32; 4],
-    pub asymmetry: [f32; 4],
+    pub phases: PhasesUniform,
+    pub jumps_low: [f32; 4],
+    pub jumps_high: [f32; 4],
+    pub orders: [f32; 4],
 }
 
 /// `Airs` of `shaders/lib/medium.wgsl`.
@@ -38,40 +60,83 @@ pub struct AirsUniform {
 }
 
 impl AirUniform {
-    /// Layers that it holds.
-    pub const LAYERS: usize = 4;
-
-    /// From a medium: its first [`Self::LAYERS`] exponential and tent layers. Henyey–Greenstein is taken for Cornette–Shanks, any other phase for Rayleigh's.
-    pub fn new(medium: &Medium) -> Self {
+    /// From a medium and its classes. Where they are not direct, formulas stay empty and [`media_rows`] has what the shader asks for.
+    pub fn new(medium: &Medium, classes: &Classes) -> Self {
         let mut air = Self::zeroed();
-        air.shape = [narrow(medium.bottom_radius_m), narrow(medium.top_altitude_m), 0.0, 0.0];
-        air.albedo = vec4(medium.ground_albedo, 0.0);
-        air.asymmetry = [PHASE_RAYLEIGH; 4];
-        for (i, layer) in medium
-            .layers
-            .iter()
-            .filter(|l| matches!(l.profile, Profile::Exponential { .. } | Profile::Tent { .. }))
-            .take(Self::LAYERS)
-            .enumerate()
-        {
-            air.scattering[i] = vec4(layer.scattering_per_m, 0.0);
-            air.extinction[i] = vec4(layer.scattering_per_m + layer.absorption_per_m, 0.0);
-            match layer.profile {
-                Profile::Exponential { scale_height_m } => air.inverse_height[i] = 1.0 / scale_height_m,
-                Profile::Tent { bottom_m, peak_m, top_m } => {
-                    air.tent_bottom[i] = bottom_m;
-                    air.tent_rise[i] = 1.0 / (peak_m - bottom_m);
-                    air.tent_top[i] = top_m;
-                    air.tent_fall[i] = 1.0 / (top_m - peak_m);
-                }
-                Profile::Constant { .. } | Profile::Table { .. } => {}
-            }
-            if let Phase::CornetteShanks { g } | Phase::HenyeyGreenstein { g } = layer.phase {
-                air.asymmetry[i] = g;
-            }
+        let jumps = medium.jumps_m(MAX_JUMPS);
+        air.shape = [
+            narrow(medium.bottom_radius_m),
+            narrow(medium.top_altitude_m),
+            if classes.direct { 0.0 } else { 1.0 },
+            if jumps.is_empty() { 0.0 } else { 1.0 },
+        ];
+        air.albedo = vec4(medium.ground_albedo, narrow(root_of_floor(medium)));
+        [air.jumps_low, air.jumps_high] = [[-1e9; 4]; 2];
+        for (slot, jump) in air.jumps_low.iter_mut().chain(&mut air.jumps_high).zip(jumps) {
+            *slot = narrow(jump);
+        }
+        let map = SunMap::new(medium);
+        air.orders = [narrow(map.scale), narrow(map.low), narrow(map.inverse), 0.0];
+        if classes.direct {
+            medium.layers.iter().take(Classes::MAX).enumerate().for_each(|(i, layer)| air.set(i, layer));
         }
         air
     }
+
+    fn set(&mut self, i: usize, layer: &Layer) {
+        self.scattering[i] = vec4(layer.scattering_per_m, 0.0);
+        self.extinction[i] = vec4(layer.scattering_per_m + layer.absorption_per_m, 0.0);
+        match layer.profile {
+            Profile::Exponential { scale_height_m } => self.inverse_height[i] = 1.0 / scale_height_m,
+            Profile::Tent { bottom_m, peak_m, top_m } => {
+                self.tent_bottom[i] = bottom_m;
+                self.tent_rise[i] = 1.0 / (peak_m - bottom_m);
+                self.tent_top[i] = top_m;
+                self.tent_fall[i] = 1.0 / (top_m - peak_m);
+            }
+            Profile::Constant { bottom_m, top_m } => {
+                self.tent_bottom[i] = if bottom_m > 0.0 { bottom_m } else { -1e9 };
+                self.tent_rise[i] = STEP;
+                self.tent_top[i] = top_m;
+                self.tent_fall[i] = STEP;
+            }
+            Profile::Table { .. } => {}
+        }
+        let (g, polynomial) = match layer.phase {
+            Phase::Rayleigh => (0.0, [0.75, 0.0, 0.75]),
+            Phase::HenyeyGreenstein { g } => (g, [1.0, 0.0, 0.0]),
+            Phase::CornetteShanks { g } => (g, [1.5 / (2.0 + g * g), 0.0, 1.5 / (2.0 + g * g)]),
+            Phase::ElekRayleigh => (0.0, [0.98, 0.35, 0.0]),
+            Phase::Isotropic => (0.0, [1.0, 0.0, 0.0]),
+            Phase::Table { .. } => (0.0, [0.0; 3]),
+        };
+        self.phases.g[i] = g;
+        [self.phases.x[i], self.phases.y[i], self.phases.z[i]] = polynomial;
+    }
+}
+
+/// Root of the depth below the datum that tables reach, over the top; at most 1.
+fn root_of_floor(medium: &Medium) -> f64 {
+    (Medium::FLOOR_M / medium.top_altitude_m).sqrt().min(1.0)
+}
+
+/// The tables of a medium whose classes are not formulas: [`MEDIA_ROWS`] rows of [`MEDIA_COLUMNS`] texels, as `shaders/lib/medium.wgsl` reads them.
+pub fn media_rows(medium: &Medium, classes: &Classes) -> Vec<[f32; 4]> {
+    let columns = || (0..MEDIA_COLUMNS).map(|i| i as f64 / (MEDIA_COLUMNS - 1) as f64);
+    let floor = root_of_floor(medium);
+    let altitude = |x: f64| {
+        let root = x * (1.0 + floor) - floor;
+        root * root.abs() * medium.top_altitude_m
+    };
+    let mut rows: Vec<[f32; 4]> = Vec::with_capacity(MEDIA_ROWS * MEDIA_COLUMNS);
+    for k in 0..Classes::MAX {
+        let of = |x: f64| classes.list.get(k).map_or(DVec3::ZERO, |c| c.scattering(medium, altitude(x)));
+        rows.extend(columns().map(|x| vec4(narrow3(of(x)), 0.0)));
+    }
+    rows.extend(columns().map(|x| vec4(narrow3(medium.extinction(altitude(x))), 0.0)));
+    let value = |k: usize, x: f64| classes.list.get(k).map_or(0.0, |c| c.value(libm::cos(x * x * core::f64::consts::PI)));
+    rows.extend(columns().map(|x| [0, 1, 2, 3].map(|k| narrow(value(k, x)))));
+    rows
 }
 
 /// Rows of four numbers that a model of air may hand to its shader: `SKY_SETTINGS` of `shaders/lib/sky_pixel.wgsl`.
@@ -111,7 +176,7 @@ impl ViewTableUniform {
         let flag = |on: bool| if on { 1.0 } else { 0.0 };
         let mut all = Self::zeroed();
         let first = split.in_rgb.iter().position(|r| *r);
-        for (i, in_rgb) in split.in_rgb.iter().enumerate().take(AirUniform::LAYERS) {
+        for (i, in_rgb) in split.in_rgb.iter().enumerate().take(Classes::MAX) {
             all.rgb[i] = flag(*in_rgb);
             all.alpha[i] = flag(!in_rgb);
             all.rgb_phase[i] = flag(first == Some(i));

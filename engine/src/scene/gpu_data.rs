@@ -5,7 +5,10 @@
 //! A struct here has the name and the field names of its WGSL twin plus `Uniform`. Fields are explained there. Those of ground and
 //! air are in `gpu_terrain.rs` and `gpu_air.rs`.
 
-pub use super::gpu_air::{AirUniform, AirsUniform, MAX_AIRS, SKY_SETTINGS, SKY_SINGLE, SkySettings, SkyUniform, ViewTableUniform};
+pub use super::gpu_air::{
+    AirUniform, AirsUniform, MAX_AIRS, MEDIA_COLUMNS, MEDIA_ROWS, PhasesUniform, SKY_SETTINGS, SKY_SINGLE, SkySettings, SkyUniform,
+    ViewTableUniform, media_rows,
+};
 use super::{Body, Camera, Ship, Snapshot, Surface};
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;

@@ -36,7 +36,7 @@
 //! | table | keys |
 //! |---|---|
 //! | (top) | `name`, `parent` (key of the body it orbits; only the star has none), `gm_km3_s2`, `radius_km` (datum sphere: sea level), `albedo = [r, g, b]` (linear sRGB, 0 … 1) |
-//! | `[star]` | for the star only: `illuminance_at_1_au_lx` (Sun: 1.28e5), `colour = [r, g, b]` (linear sRGB, luminance 1) |
+//! | `[star]` | for the star only: `illuminance_at_1_au_lx` (Sun: 1.28e5), *optional* its spectrum: `temperature_k` (a black body's), or `wavelengths_nm` (rising) and `irradiance` (any scale); the Sun's where neither is given. *Optional* `colour = [r, g, b]` (linear sRGB, luminance 1), that of the spectrum against D65 where it is left out |
 //! | `[rotation]` | *optional* `model`: `"earth"` (precession, nutation, observed UT1; takes no other key) or `"iau"` (the same as none). IAU form: `pole_ra_deg`, `pole_ra_deg_per_century`, `pole_dec_deg`, `pole_dec_deg_per_century`, `meridian_deg`, `meridian_deg_per_day`; *optional* `meridian_deg_per_century2` and lists of `[amplitude_deg, phase_deg, rate_deg_per_century]`: `pole_ra_terms` (sines), `pole_dec_terms` (cosines), `meridian_terms` (sines) |
 //! | `[shape]` | *optional*, for eclipses; all keys *optional*: `equatorial_radius_km` (else `radius_km`), `flattening` (0 … 0.5), `limb_radius_km = [outer, inner]` (of the limb at outer and inner contacts), `shadow_enlargement` (1 … 1.1: by air and oblateness, for eclipses of its moons) |
 //! | `[gravity]` | *optional*, what makes it more than a point: `reference_radius_km`, `j2`, `j3`, `j4` (unnormalised); *optional* `c22`, `tide_k2` and `tide_lag_s` (the bulge that others raise on it), `gm_with_moons_km3_s2` (with moons that have no folder) |
@@ -74,7 +74,9 @@ pub mod body;
 pub mod draft;
 pub mod fault;
 pub mod fields;
+pub mod listing;
 pub mod overlay;
+pub mod planet;
 pub mod reader;
 pub mod relief;
 pub mod reload;
@@ -92,6 +94,8 @@ use crate::world::World;
 use crate::world::ship::spec::ShipSpec;
 use crate::world::start::StartSpec;
 use crate::world::system::System;
+use atmosphere::AirSpec;
+use engine::light::spectrum::Starlight;
 use overlay::Overlay;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -112,6 +116,11 @@ impl Assets {
     /// A system; `progress` hears how much is done, 0 … 1, and of what.
     pub fn system(&self, key: &str, progress: &(dyn Fn(f32, &str) + Sync)) -> Result<Arc<System>, AssetErrors> {
         system::load_system(&self.overlay, key, progress)
+    }
+
+    /// The air of a body under a star, without the system around it; the default where it has none.
+    pub fn air(&self, body: &str, star: &Starlight) -> Result<AirSpec, AssetErrors> {
+        system::load_air(&self.overlay, body, star)
     }
 
     /// A system with its airs read anew, everything else as it is.
@@ -177,12 +186,12 @@ impl Assets {
 
     /// The bodies there are.
     pub fn bodies(&self) -> Vec<String> {
-        system::bodies(&self.overlay)
+        listing::bodies(&self.overlay)
     }
 
     /// One body checked: its own files, and the systems that list it. Those, and what is hardly meant.
     pub fn check_body(&self, key: &str) -> Result<(Vec<String>, Vec<String>), AssetErrors> {
-        let systems: Vec<String> = self.systems().into_iter().filter(|s| system::lists(&self.overlay, s, key)).collect();
+        let systems: Vec<String> = self.systems().into_iter().filter(|s| listing::lists(&self.overlay, s, key)).collect();
         let (mut errors, mut warnings) = (AssetErrors::default(), Vec::new());
         if systems.is_empty() {
             warnings.extend(errors.keep(system::load_body(&self.overlay, key)).into_iter().flatten());
@@ -208,7 +217,7 @@ impl Assets {
             systems.insert(key, system);
         }
         for body in self.bodies() {
-            if !systems.keys().any(|s| system::lists(&self.overlay, s, &body)) {
+            if !systems.keys().any(|s| listing::lists(&self.overlay, s, &body)) {
                 warnings.extend(errors.keep(system::load_body(&self.overlay, &body)).into_iter().flatten());
             }
         }

@@ -58,6 +58,10 @@ pub enum Error {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Kepler(#[from] probe::kepler::KeplerError),
+    /// No radiances.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Sky(#[from] probe::sky::SkyError),
     /// No case of orbital motion.
     #[error(transparent)]
     #[diagnostic(transparent)]
@@ -131,7 +135,9 @@ impl Error {
     fn exit_code(&self) -> ExitCode {
         use studio::StudioError::Gpu;
         match self {
-            Self::Shot(shot::ShotError::Studio(Gpu(_))) | Self::Headless(headless::HeadlessError::Studio(Gpu(_))) => ExitCode::from(2),
+            Self::Sky(probe::sky::SkyError::Gpu(_))
+            | Self::Shot(shot::ShotError::Studio(Gpu(_)))
+            | Self::Headless(headless::HeadlessError::Studio(Gpu(_))) => ExitCode::from(2),
             _ => ExitCode::FAILURE,
         }
     }
@@ -188,10 +194,12 @@ fn places_of(mode: &Mode) -> &Places {
         Mode::Probe(Probe::Ephemeris(a)) => &a.common.places,
         Mode::Probe(Probe::Eclipses(a)) => &a.common.places,
         Mode::Probe(Probe::Propagate(a)) => &a.common.places,
+        Mode::Probe(Probe::Sky(a)) => &a.places,
         Mode::Bench(Bench::Orbit(a)) => &a.places,
         Mode::Bench(Bench::Ships(a)) => &a.places,
         Mode::Bench(Bench::Kepler(a)) => &a.places,
         Mode::Bench(Bench::Ephemeris(a)) => &a.places,
+        Mode::Bench(Bench::Air(a)) => &a.places,
     }
 }
 

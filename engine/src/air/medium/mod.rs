@@ -2,7 +2,9 @@
 //!
 //! Each layer scatters and absorbs in proportion to its density profile. [`MediumSpec`] is what a file holds; a body's radius makes
 //! a [`Medium`] of it. [`profile`] is density against altitude, [`phase`] where scattered light goes; both in f64.
+//! [`classes`] is what the GPU sees of it.
 
+pub mod classes;
 pub mod phase;
 pub mod profile;
 
@@ -10,6 +12,7 @@ use super::RangeError;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
+pub use classes::{Class, Classes};
 pub use phase::Phase;
 pub use profile::Profile;
 

@@ -5,6 +5,7 @@
 pub mod gradient;
 pub mod limb_table;
 pub mod maps;
+pub mod orders;
 pub mod physical;
 pub mod shell;
 pub mod thickness;

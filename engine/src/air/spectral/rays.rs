@@ -150,7 +150,7 @@ pub fn limb(medium: &SpectralMedium, fraction: f64) -> Ray {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::air::reference::single_scattering;
+    use crate::air::reference::{self, Options, Ray as Sight};
     use crate::air::spectral::tests::earth;
 
     #[test]
@@ -164,7 +164,10 @@ mod tests {
                 DVec3::new(s * ca, s * sa, c)
             };
             let (eye, view) = (DVec3::Z * (medium.bottom_radius_m + ray.altitude_m), dir(ray.view_deg, 0.0));
-            let truth = single_scattering(&channels, eye, view, dir(ray.sun_deg, ray.azimuth_deg), SUN_RAD, 800);
+            let sun = dir(ray.sun_deg, ray.azimuth_deg);
+            let sight = Sight { from_m: eye, direction: view, sun, sun_rad: SUN_RAD, occluders: Vec::new() };
+            let only_once = Options { max_walks: 0, single_error: 1e-4, ..Options::default() };
+            let truth = reference::radiance(&channels, &[sight], &only_once)[0];
             let met = Met::trace(&medium, ray, 96).unwrap();
             for c in 0..3 {
                 let (l, t) = (met.radiance(&at[c]), met.transmittance(&at[c]));

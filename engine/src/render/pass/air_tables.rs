@@ -1,23 +1,25 @@
-//! Air tables: transmittance, multiple scattering and sky irradiance of each air, baked only when a medium is new or has changed.
+//! Air tables: transmittance, further orders of scattering and sky irradiance of each air, baked only when a medium is new or has changed.
 //!
-//! A slot (a layer of three texture arrays) belongs to a body's id; the slot longest unused is given away when all are taken.
+//! A slot (a layer of texture arrays, a block of the table of further orders) belongs to a body's id; the slot longest unused is given away when all are taken.
 //! What the tables mean and how to ask them is in `shaders/lib/air.wgsl`; bodies without air have no slot and ask nothing.
 
-use crate::air::Medium;
+use super::air_orders::{Inputs, OrdersBaker};
+use crate::air::model::orders::Plan;
+use crate::air::{Classes, Medium};
 use crate::gpu::buffer::Uniform;
 use crate::gpu::texture::{Texture, linear_sampler};
 use crate::gpu::{Gpu, ShaderLibrary};
 use crate::render::RenderError;
-use crate::render::pipeline::{compute_pipeline, sampler_entry, texture_entry, uniform_entry};
+use crate::render::pipeline::{compute_pipeline, loaded_entry, uniform_entry};
 use crate::render::shared::{AirTables, FrameContext};
 use crate::render::targets::HDR;
 use crate::scene::Snapshot;
-use crate::scene::gpu_data::{AirUniform, AirsUniform, MAX_AIRS};
+use crate::scene::gpu_data::{AirUniform, AirsUniform, MAX_AIRS, MEDIA_COLUMNS, MEDIA_ROWS, media_rows};
 use bytemuck::Zeroable;
 use wgpu::{BindingResource, TextureUsages, TextureViewDimension};
 
-/// Texels of the tables, as in `shaders/lib/air.wgsl`: transmittance, multiple scattering, irradiance.
-const SIZES: [[u32; 2]; 3] = [[256, 64], [64, 32], [64, 16]];
+/// Texels of the transmittance table, as in `shaders/lib/air.wgsl`.
+const TRANSMITTANCE_SIZE: [u32; 2] = [256, 64];
 
 /// Whose air a slot holds.
 struct Slot {
@@ -29,9 +31,12 @@ struct Slot {
 
 /// The pass.
 pub struct AirBaker {
-    layouts: [wgpu::BindGroupLayout; 3],
-    pipelines: [wgpu::ComputePipeline; 3],
-    tables: [Texture; 3],
+    layout: wgpu::BindGroupLayout,
+    pipeline: wgpu::ComputePipeline,
+    orders: OrdersBaker,
+    transmittance: Texture,
+    irradiance: Texture,
+    media: Texture,
     values: AirTables,
     airs: Uniform<AirsUniform>,
     linear: wgpu::Sampler,
@@ -53,37 +58,35 @@ impl AirBaker {
             },
             count: None,
         };
-        let array = TextureViewDimension::D2Array;
-        let entries = [
-            uniform_entry(0),
-            storage,
-            texture_entry(2, array),
-            sampler_entry(3, wgpu::SamplerBindingType::Filtering),
-            texture_entry(4, array),
-        ];
-        // Each bake reads the tables before it.
-        let layouts = [2, 4, 5].map(|count| {
-            gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("air bake"), entries: &entries[..count] })
+        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("air transmittance"),
+            entries: &[uniform_entry(0), storage, loaded_entry(2, TextureViewDimension::D2Array)],
         });
-        let bake = |layout: &wgpu::BindGroupLayout, file: &str| -> Result<_, RenderError> {
-            Ok(compute_pipeline(gpu, file, &shaders.load(&gpu.device, file)?, &[layout], "bake"))
-        };
-        let pipelines = [
-            bake(&layouts[0], "pass/air_transmittance.wgsl")?,
-            bake(&layouts[1], "pass/air_multiscatter.wgsl")?,
-            bake(&layouts[2], "pass/air_irradiance.wgsl")?,
-        ];
+        let module = shaders.load(&gpu.device, "pass/air_transmittance.wgsl")?;
+        let pipeline = compute_pipeline(gpu, "air_transmittance", &module, &[&layout], "bake");
         let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::STORAGE_BINDING | TextureUsages::COPY_SRC;
-        let tables = SIZES.map(|[w, h]| Texture::with(&gpu.device, "air table", [w, h, MAX_AIRS as u32], 1, HDR, usage));
+        let [w, h] = TRANSMITTANCE_SIZE;
+        let transmittance = Texture::with(&gpu.device, "air transmittance", [w, h, MAX_AIRS as u32], 1, HDR, usage);
+        let irradiance = OrdersBaker::irradiance_tables(gpu);
+        let orders = OrdersBaker::new(gpu, shaders)?;
+        let media = Texture::with(
+            &gpu.device,
+            "media",
+            [MEDIA_COLUMNS as u32, MEDIA_ROWS as u32, MAX_AIRS as u32],
+            1,
+            wgpu::TextureFormat::Rgba32Float,
+            TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST,
+        );
         let airs = Uniform::new(&gpu.device, "Airs", wgpu::BufferUsages::empty());
         let values = AirTables {
             airs: airs.buffer.clone(),
-            transmittance: tables[0].array_view(),
-            multiple: tables[1].array_view(),
-            irradiance: tables[2].array_view(),
+            transmittance: transmittance.array_view(),
+            orders: orders.view(),
+            irradiance: irradiance.array_view(),
+            media: media.array_view(),
         };
         let linear = linear_sampler(&gpu.device, "air tables", false);
-        Ok(Self { layouts, pipelines, tables, values, airs, linear, slots: Vec::new(), clock: 0 })
+        Ok(Self { layout, pipeline, orders, transmittance, irradiance, media, values, airs, linear, slots: Vec::new(), clock: 0 })
     }
 
     /// The slot of each body of the scene that has air; new and changed media wait for [`AirBaker::record`].
@@ -147,17 +150,28 @@ impl AirBaker {
     pub fn bake(&mut self, gpu: &Gpu, pass: &mut wgpu::ComputePass<'_>) {
         let mut all = AirsUniform::zeroed();
         for (air, slot) in all.list.iter_mut().zip(&self.slots) {
-            *air = AirUniform::new(&slot.medium);
+            *air = AirUniform::new(&slot.medium, &Classes::of(&slot.medium));
         }
         self.airs.write(&gpu.queue, &all);
         let waiting: Vec<u32> = self.slots.iter().enumerate().filter(|(_, s)| !s.baked).map(|(i, _)| i as u32).collect();
         for slot in waiting {
+            self.write_media(gpu, slot);
             self.bake_slot(gpu, pass, slot);
         }
         self.slots.iter_mut().for_each(|s| s.baked = true);
     }
 
+    /// Hands over the tables of a medium that is not formulas.
+    fn write_media(&self, gpu: &Gpu, slot: u32) {
+        let Some(medium) = self.slots.get(slot as usize).map(|s| &s.medium) else { return };
+        let classes = Classes::of(medium);
+        if !classes.direct {
+            self.media.write(&gpu.queue, 0, slot, bytemuck::cast_slice(&media_rows(medium, &classes)));
+        }
+    }
+
     fn bake_slot(&self, gpu: &Gpu, pass: &mut wgpu::ComputePass<'_>, slot: u32) {
+        let Some(held) = self.slots.get(slot as usize) else { return };
         let layer = |table: &Texture, dimension| {
             table.texture.create_view(&wgpu::TextureViewDescriptor {
                 dimension: Some(dimension),
@@ -166,31 +180,35 @@ impl AirBaker {
                 ..Default::default()
             })
         };
-        let outputs = [0, 1, 2].map(|i| layer(&self.tables[i], TextureViewDimension::D2));
-        let inputs = [0, 1].map(|i| layer(&self.tables[i], TextureViewDimension::D2Array));
         let size = size_of::<AirUniform>() as u64;
         let air = wgpu::BufferBinding { buffer: &self.airs.buffer, offset: u64::from(slot) * size, size: wgpu::BufferSize::new(size) };
-        for (i, count) in [2, 4, 5].into_iter().enumerate() {
-            let resources = [
-                BindingResource::Buffer(air.clone()),
-                BindingResource::TextureView(&outputs[i]),
-                BindingResource::TextureView(&inputs[0]),
-                BindingResource::Sampler(&self.linear),
-                BindingResource::TextureView(&inputs[1]),
-            ];
-            let entries: Vec<_> =
-                (0..).zip(resources).take(count).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
-            let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: Some("air bake"),
-                layout: &self.layouts[i],
-                entries: &entries,
-            });
-            pass.set_pipeline(&self.pipelines[i]);
-            pass.set_bind_group(0, &group, &[]);
-            let [w, h] = SIZES[i];
-            // The first bake works on 8 × 8 texels a group, the others on one.
-            if i == 0 { pass.dispatch_workgroups(w.div_ceil(8), h.div_ceil(8), 1) } else { pass.dispatch_workgroups(w, h, 1) }
-        }
+        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("air transmittance"),
+            layout: &self.layout,
+            entries: &[
+                wgpu::BindGroupEntry { binding: 0, resource: BindingResource::Buffer(air.clone()) },
+                wgpu::BindGroupEntry {
+                    binding: 1,
+                    resource: BindingResource::TextureView(&layer(&self.transmittance, TextureViewDimension::D2)),
+                },
+                wgpu::BindGroupEntry {
+                    binding: 2,
+                    resource: BindingResource::TextureView(&layer(&self.media, TextureViewDimension::D2Array)),
+                },
+            ],
+        });
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &group, &[]);
+        let [w, h] = TRANSMITTANCE_SIZE;
+        pass.dispatch_workgroups(w.div_ceil(8), h.div_ceil(8), 1);
+        let inputs = Inputs {
+            air,
+            transmittance: &layer(&self.transmittance, TextureViewDimension::D2Array),
+            linear: &self.linear,
+            irradiance: &self.values.irradiance,
+            slot,
+        };
+        self.orders.bake(gpu, pass, &Plan::new(&held.medium), &inputs);
     }
 
     /// Tables of one medium alone, in slot 0, submitted: for probes and tests.
@@ -202,8 +220,8 @@ impl AirBaker {
         self.values()
     }
 
-    /// The texture arrays: transmittance, multiple scattering, irradiance (the last two hold square roots).
-    pub const fn textures(&self) -> &[Texture; 3] {
-        &self.tables
+    /// The texture arrays of transmittance and of irradiance (which holds fourth roots).
+    pub const fn textures(&self) -> [&Texture; 2] {
+        [&self.transmittance, &self.irradiance]
     }
 }

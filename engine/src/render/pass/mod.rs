@@ -2,6 +2,7 @@
 //!
 //! A pass has `new` (compiles), `skip` (why the scene does not need it, in words) and `record`.
 
+pub mod air_orders;
 pub mod air_tables;
 pub mod bloom;
 pub mod exposure;
@@ -25,7 +26,7 @@ use crate::scene::Snapshot;
 
 /// All passes, compiled.
 pub struct Passes {
-    /// Transmittance, multiple scattering and irradiance of every air in view.
+    /// Transmittance, further orders and irradiance of every air in view.
     pub air_tables: air_tables::AirBaker,
     /// What the shadow map is while no ship throws a shadow.
     pub no_shadow: ShadowMap,

@@ -10,7 +10,7 @@ pub mod plausible;
 
 use super::fault::Fault;
 use super::fields;
-use super::overlay::{DATA_MAX, Overlay, read_bytes};
+use super::overlay::{DATA_MAX, read_bytes};
 use super::reader::{ANY, Reader};
 use super::tree::{Data, Node};
 use engine::air::density::Lapse;
@@ -20,6 +20,7 @@ use engine::air::{Air, Column, ColumnSpec, Model, RangeError};
 use engine::light::spectrum::Starlight;
 use engine::units::NM;
 use optics::Channels;
+use std::path::PathBuf;
 
 /// Air as its file describes it.
 #[derive(Clone, Debug, Default)]
@@ -28,6 +29,8 @@ pub struct AirSpec {
     pub column: Option<Column>,
     /// What one sees, if anything.
     pub look: Option<Air>,
+    /// What `look` was drawn from.
+    pub by_wavelength: Option<SpectralMedium>,
 }
 
 /// What a body lends to its air.
@@ -52,10 +55,8 @@ impl Datum {
 /// What an air is seen by, and where the files lie that it names.
 #[derive(Clone, Copy)]
 pub struct Setting<'a> {
-    /// The assets with mods over them.
-    pub overlay: &'a Overlay,
-    /// The body's key.
-    pub body: &'a str,
+    /// Where a file beside the air's own lies, if there is one of this name.
+    pub beside: &'a dyn Fn(&str) -> Option<PathBuf>,
     /// The light under which its colours are found.
     pub star: &'a Starlight,
 }
@@ -68,11 +69,11 @@ pub fn read_air(r: &Reader<'_>, datum: Datum, setting: &Setting<'_>) -> AirSpec 
         return AirSpec::default();
     }
     let column = r.maybe_table("physics").and_then(|t| tell(&t, "", Column::new(&column_of(&t, datum))));
-    let look = look_of(r, datum, setting);
+    let (look, by_wavelength) = look_of(r, datum, setting).unzip();
     if let Some(look) = look.as_ref().filter(|_| r.errors() == before) {
         plausible::suspicions(r.node, look, column.as_ref(), datum.gravity_m_s2).into_iter().for_each(|s| r.fault(s));
     }
-    AirSpec { column, look }
+    AirSpec { column, look, by_wavelength }
 }
 
 /// Turns range errors into faults; `table` is where their fields are, with a point behind it.
@@ -108,7 +109,7 @@ fn column_of(r: &Reader<'_>, datum: Datum) -> ColumnSpec {
 }
 
 /// The look. What each model cannot do without is asked for here.
-fn look_of(r: &Reader<'_>, datum: Datum, setting: &Setting<'_>) -> Option<Air> {
+fn look_of(r: &Reader<'_>, datum: Datum, setting: &Setting<'_>) -> Option<(Air, SpectralMedium)> {
     let before = r.errors();
     let word = r.node.get("model").and_then(|e| e.value.text()).unwrap_or("physical");
     if word == "none" {
@@ -124,14 +125,14 @@ fn look_of(r: &Reader<'_>, datum: Datum, setting: &Setting<'_>) -> Option<Air> {
     let wavelengths_m = wavelengths_m.unwrap_or(SpectralMedium::WAVELENGTHS_M);
     let layers = layers::read(r, datum, Channels { wavelengths_m });
     let model = model_of(r, word, setting);
-    let medium = SpectralMedium { bottom_radius_m: datum.radius_m, top_altitude_m, ground_albedo, wavelengths_m, layers };
+    let by_wavelength = SpectralMedium { bottom_radius_m: datum.radius_m, top_altitude_m, ground_albedo, wavelengths_m, layers };
     let spectral = word == "physical" && r.node.get("spectrum").and_then(|e| e.value.text()) == Some("spectral");
-    let drawn = tell(r, "", medium.draw(spectral, setting.star));
+    let drawn = tell(r, "", by_wavelength.draw(spectral, setting.star));
     if r.errors() > before {
         return None;
     }
     let (medium, bands) = drawn?;
-    Some(Air { medium, bands, model: model? })
+    Some((Air { medium, bands, model: model? }, by_wavelength))
 }
 
 /// The model that a word names, with the settings in the table of that name.
@@ -175,10 +176,10 @@ fn painted(table: Option<&Node>, gradient: &mut Gradient, setting: &Setting<'_>,
     for (key, map) in keys::MAPS.into_iter().zip([&mut gradient.shell_map, &mut gradient.ground_map]) {
         let Some(entry) = table.and_then(|t| t.get(key)) else { continue };
         let name = entry.value.text().unwrap_or_default();
-        let relative = format!("bodies/{}/{name}", setting.body);
-        let fault = match setting.overlay.find(&relative).filter(|_| !name.contains("..")) {
-            None => Fault::at(&entry.value.at, format!("`gradient.{key}` = \"{name}\": expected a PNG beside this file"))
-                .help(Some(format!("looked for {relative} in the assets and in the mods"))),
+        let plain = !name.contains(['/', '\\', ':']);
+        let fault = match Some(name).filter(|_| plain).and_then(setting.beside) {
+            None => Fault::at(&entry.value.at, format!("`gradient.{key}` = \"{name}\": expected a PNG that lies beside this file"))
+                .help(Some("in a mod it may also lie beside the file that a patch changes, in the assets".to_owned())),
             Some(path) => match read_bytes(&path, DATA_MAX).and_then(|bytes| painting(&bytes).map_err(|what| Fault::file(&path, what))) {
                 Ok(painted) => {
                     *map = painted;

@@ -3,6 +3,7 @@
 //! Each bench prints its rows as JSON on stdout (or into `--json`), one object a run, so that tools compare them with others'.
 //! Not here: the numbers that probes give ([`super::probe`]), the tests that hold them.
 
+pub mod air;
 pub mod ephemeris;
 pub mod kepler;
 pub mod orbit;
@@ -19,6 +20,7 @@ use crate::cli::Bench;
 /// Runs a bench.
 pub fn run(bench: &Bench) -> Result<(), Error> {
     match bench {
+        Bench::Air(args) => air::run(args),
         Bench::Orbit(args) => orbit::run(args),
         Bench::Ships(args) => ships::run(args),
         Bench::Ephemeris(args) => ephemeris::run(args),

@@ -6,6 +6,7 @@ pub mod ephemeris;
 pub mod height;
 pub mod kepler;
 pub mod propagate;
+pub mod sky;
 
 use super::Error;
 use super::bench::orbit_case;
@@ -51,6 +52,10 @@ pub fn run(probe: &Probe) -> Result<(), Error> {
             let setting = method.setting(args.tol, args.dt)?;
             let case = orbit_case::read(&args.case, args.name.as_deref(), args.t)?;
             answer(args.common.out.as_deref(), |out| propagate::write(&case, method, setting, out))
+        }
+        Probe::Sky(args) => {
+            let (rays, found) = sky::answer(args)?;
+            answer(args.out.as_deref(), |out| sky::write(&rays, &found, out))
         }
         Probe::Eclipses(args) => {
             let system = system(&args.common)?;

@@ -77,16 +77,16 @@ impl Painter for Gradient {
     }
 }
 
-/// As the head of the shader says.
-fn settings(model: &Settings) -> SkySettings {
+/// The model's numbers, as the head of the shader says.
+pub fn settings(model: &Settings) -> SkySettings {
     let mut rows = no_settings();
     rows[0] = [model.stretch, model.stretch + model.fade_stretch, narrow(model.visibility_m), model.transparency];
     rows[1] = [model.brightness * core::f32::consts::FRAC_1_PI, model.opacity, 0.0, 0.0];
     rows
 }
 
-/// Linear RGBA. An empty map is one black texel.
-fn upload(gpu: &Gpu, map: &ColourMap) -> Texture {
+/// A map as the shader reads it: linear RGBA. An empty one is one black texel.
+pub fn upload(gpu: &Gpu, map: &ColourMap) -> Texture {
     let size = map.size.map(|n| n.max(1));
     let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
     let texture = Texture::new(&gpu.device, "gradient map", size, wgpu::TextureFormat::Rgba16Float, usage);

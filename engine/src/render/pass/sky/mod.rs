@@ -29,8 +29,8 @@ use bytemuck::Zeroable;
 use choose::{Choice, Rect};
 use wgpu::{BindGroupEntry, BindingResource};
 
-/// Steps of a march through a whole sky unless told otherwise: the mean error against 256 steps is under 1 % in every light.
-pub const STEPS: u32 = 24;
+/// Points of a march on a long stretch of a ray unless told otherwise.
+pub const STEPS: u32 = 12;
 
 /// How one model of air draws. Bind groups: 0 and 1 as in [`crate::render::shared`], 2 the picture (opaque, depth, `Sky`), 3 its own.
 pub trait Painter: Send {
@@ -42,6 +42,11 @@ pub trait Painter: Send {
     fn settings_in(&self, scene: &Snapshot, body: &Body, air: &Air) -> SkySettings {
         let _ = scene;
         self.settings(body, air)
+    }
+    /// Which pipeline draws a body.
+    fn variant(&self, body: &Body, air: &Air) -> Variant {
+        let _ = (body, air);
+        Variant::Full
     }
     /// Group 3 for a body (`id` is [`Body::id`]), laid out by [`PainterKind::own_layout`].
     fn group(&self, id: u16) -> &wgpu::BindGroup;
@@ -62,19 +67,40 @@ pub struct PainterKind {
     pub file: &'static str,
     /// Layout of group 3.
     pub own_layout: wgpu::BindGroupLayout,
-    pipeline: wgpu::RenderPipeline,
+    pipelines: [wgpu::RenderPipeline; 2],
+}
+
+/// Which of a model's two pipelines: the second leaves out what its constants switch off.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Variant {
+    /// Everything that the model can do.
+    Full,
+    /// For airs that need less.
+    Plain,
 }
 
 impl PainterKind {
     /// Compiles `file`; `own` are the entries of group 3.
     pub fn new(parts: &Parts<'_>, file: &'static str, own: &[wgpu::BindGroupLayoutEntry]) -> Result<Self, RenderError> {
+        Self::with_plain(parts, file, own, &[])
+    }
+
+    /// The same; `plain` are the `override` constants of [`Variant::Plain`], which is the full pipeline where there are none.
+    pub fn with_plain(
+        parts: &Parts<'_>,
+        file: &'static str,
+        own: &[wgpu::BindGroupLayoutEntry],
+        plain: &[(&str, f64)],
+    ) -> Result<Self, RenderError> {
         let Parts { gpu, shaders, shared, picture } = parts;
         let own_layout =
             gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("group 3: model of air"), entries: own });
         let module = shaders.load(&gpu.device, file)?;
         let groups = [&shared.frame_layout, &shared.light_layout, picture, &own_layout];
-        let pipeline = PipelineKind::full_screen("sky", &module, &groups, HDR).make(gpu);
-        Ok(Self { file, own_layout, pipeline })
+        let kind = PipelineKind::full_screen("sky", &module, &groups, HDR);
+        let full = kind.make(gpu);
+        let less = if plain.is_empty() { full.clone() } else { PipelineKind { constants: plain, ..kind }.make(gpu) };
+        Ok(Self { file, own_layout, pipelines: [full, less] })
     }
 }
 
@@ -133,7 +159,7 @@ pub fn picture_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
 
 /// The pass.
 pub struct Sky {
-    /// Steps of a march through a whole sky; short ways take fewer.
+    /// Points of a march on a long stretch of a ray, a multiple of four.
     pub steps: u32,
     picture: wgpu::BindGroupLayout,
     painters: Vec<Box<dyn Painter>>,
@@ -203,7 +229,10 @@ impl Sky {
             let Some((id, air)) = air_of(f.scene, choice) else { continue };
             let Some(painter) = self.painters.get(painter_of(&air.model)) else { continue };
             let Some(body) = f.scene.bodies.get(choice.body as usize) else { continue };
-            uniform.write(&f.gpu.queue, &SkyUniform { ids: [choice.body, self.steps, 0, 0], settings: painter.settings_in(f.scene, body, air) });
+            uniform.write(
+                &f.gpu.queue,
+                &SkyUniform { ids: [choice.body, self.steps, 0, 0], settings: painter.settings_in(f.scene, body, air) },
+            );
             let targets = f.targets;
             let (current, other) = if self.in_aerial { (&targets.aerial, &targets.opaque) } else { (&targets.opaque, &targets.aerial) };
             let (from, into) = if choice.rect == whole {
@@ -223,7 +252,7 @@ impl Sky {
                 ],
             });
             let mut pass = f.draw_full_screen("sky", &into.view, choice.rect != whole);
-            pass.set_pipeline(&painter.kind().pipeline);
+            pass.set_pipeline(&painter.kind().pipelines[painter.variant(body, air) as usize]);
             pass.set_bind_group(1, light, &[]);
             pass.set_bind_group(2, &picture, &[]);
             pass.set_bind_group(3, painter.group(id), &[]);

@@ -1,0 +1,199 @@
+//! Further orders of scattering of one air: gathered, turned, order by order, and summed into its part of the table.
+//!
+//! The method is told in [`crate::air::model::orders`], which makes the plan; the shaders are `shaders/pass/air_orders.wgsl` and
+//! `air_orders_sum.wgsl`; how the table is asked, `shaders/lib/air_orders.wgsl`.
+
+use crate::air::model::orders::{ALTITUDES, DIRECTIONS, MAX_ORDERS, Plan, SUNS, VIEWS};
+use crate::gpu::texture::Texture;
+use crate::gpu::{Gpu, ShaderLibrary};
+use crate::render::RenderError;
+use crate::render::pipeline::{compute_pipeline, sampler_entry, texture_entry, uniform_entry};
+use crate::render::targets::HDR;
+use crate::scene::gpu_data::MAX_AIRS;
+use wgpu::util::DeviceExt as _;
+use wgpu::{BindGroupEntry, BindingResource, BufferUsages, TextureUsages, TextureViewDimension};
+
+/// Texels of the whole table.
+#[allow(clippy::cast_possible_truncation)]
+const SIZE: wgpu::Extent3d =
+    wgpu::Extent3d { width: 3 * SUNS as u32, height: (MAX_AIRS * ALTITUDES) as u32, depth_or_array_layers: VIEWS as u32 };
+/// Texels of the irradiance table of one air.
+#[allow(clippy::cast_possible_truncation)]
+pub const IRRADIANCE_SIZE: [u32; 2] = [SUNS as u32, ALTITUDES as u32];
+/// Bytes of three vectors per sun.
+const SUN_ROWS: u64 = (SUNS * 3 * 16) as u64;
+
+/// Pipelines, the table, and the room to work in.
+pub struct OrdersBaker {
+    layout: wgpu::BindGroupLayout,
+    sum_layout: wgpu::BindGroupLayout,
+    first: wgpu::ComputePipeline,
+    next: wgpu::ComputePipeline,
+    turn: wgpu::ComputePipeline,
+    products: wgpu::ComputePipeline,
+    sum: wgpu::ComputePipeline,
+    gathered: wgpu::Buffer,
+    sources: wgpu::Buffer,
+    irradiance: wgpu::Buffer,
+    scalars: wgpu::Buffer,
+    table: wgpu::Texture,
+}
+
+/// What else the bake of one air needs.
+pub struct Inputs<'a> {
+    /// `Air`.
+    pub air: wgpu::BufferBinding<'a>,
+    /// Its transmittance, as an array of one layer.
+    pub transmittance: &'a wgpu::TextureView,
+    /// Bilinear, clamped.
+    pub linear: &'a wgpu::Sampler,
+    /// All airs' irradiance, a storage array.
+    pub irradiance: &'a wgpu::TextureView,
+    /// Its slot.
+    pub slot: u32,
+}
+
+impl OrdersBaker {
+    /// Compiles the passes and makes room for all airs.
+    pub fn new(gpu: &Gpu, shaders: &ShaderLibrary) -> Result<Self, RenderError> {
+        let storage = |binding, read_only| buffer_entry(binding, wgpu::BufferBindingType::Storage { read_only });
+        let written = |binding, view_dimension| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: wgpu::ShaderStages::COMPUTE,
+            ty: wgpu::BindingType::StorageTexture { access: wgpu::StorageTextureAccess::WriteOnly, format: HDR, view_dimension },
+            count: None,
+        };
+        let layout =
+            |entries: &[_]| gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("air orders"), entries });
+        let each = layout(&[
+            uniform_entry(0),
+            texture_entry(1, TextureViewDimension::D2Array),
+            sampler_entry(2, wgpu::SamplerBindingType::Filtering),
+            uniform_entry(3),
+            storage(4, true),
+            storage(5, false),
+            storage(6, false),
+            storage(7, false),
+        ]);
+        let all = layout(&[
+            uniform_entry(3),
+            storage(4, true),
+            storage(5, true),
+            storage(6, false),
+            written(7, TextureViewDimension::D3),
+            written(8, TextureViewDimension::D2Array),
+        ]);
+        let module = shaders.load(&gpu.device, "pass/air_orders.wgsl")?;
+        let sum_module = shaders.load(&gpu.device, "pass/air_orders_sum.wgsl")?;
+        let room = |label, size| {
+            gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size,
+                usage: BufferUsages::STORAGE,
+                mapped_at_creation: false,
+            })
+        };
+        let (altitudes, orders) = (ALTITUDES as u64, u64::from(MAX_ORDERS));
+        Ok(Self {
+            first: compute_pipeline(gpu, "air_orders", &module, &[&each], "first"),
+            next: compute_pipeline(gpu, "air_orders", &module, &[&each], "next"),
+            turn: compute_pipeline(gpu, "air_orders", &module, &[&each], "turn"),
+            products: compute_pipeline(gpu, "air_orders_sum", &sum_module, &[&all], "products"),
+            sum: compute_pipeline(gpu, "air_orders_sum", &sum_module, &[&all], "sum"),
+            layout: each,
+            sum_layout: all,
+            gathered: room("air orders: gathered", altitudes * DIRECTIONS as u64 * SUN_ROWS),
+            sources: room("air orders: sources", orders * altitudes * VIEWS as u64 * SUN_ROWS),
+            irradiance: room("air orders: irradiance", orders * altitudes * SUNS as u64 * 16),
+            scalars: room("air orders: products", orders * orders * 16),
+            table: gpu.device.create_texture(&wgpu::TextureDescriptor {
+                label: Some("air orders"),
+                size: SIZE,
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D3,
+                format: HDR,
+                usage: TextureUsages::TEXTURE_BINDING | TextureUsages::STORAGE_BINDING,
+                view_formats: &[],
+            }),
+        })
+    }
+
+    /// The irradiance tables of all airs, which this pass writes too.
+    pub fn irradiance_tables(gpu: &Gpu) -> Texture {
+        let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::STORAGE_BINDING | TextureUsages::COPY_SRC;
+        let [w, h] = IRRADIANCE_SIZE;
+        #[allow(clippy::cast_possible_truncation)]
+        Texture::with(&gpu.device, "air irradiance", [w, h, MAX_AIRS as u32], 1, HDR, usage)
+    }
+
+    /// The table.
+    pub fn view(&self) -> wgpu::TextureView {
+        self.table.create_view(&wgpu::TextureViewDescriptor::default())
+    }
+
+    /// Computes the orders of one air by its plan. Work on several airs may follow in one pass.
+    #[allow(clippy::cast_possible_truncation)]
+    pub fn bake(&self, gpu: &Gpu, pass: &mut wgpu::ComputePass<'_>, plan: &Plan, inputs: &Inputs<'_>) {
+        let buffer = |contents: &[u8], usage| {
+            gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some("air orders"), contents, usage })
+        };
+        let orders = plan.orders.clamp(2, MAX_ORDERS);
+        let plan = buffer(bytemuck::cast_slice(&plan.rows), BufferUsages::STORAGE);
+        let (directions, views, altitudes) = (DIRECTIONS as u32, VIEWS as u32, ALTITUDES as u32);
+        for order in 0..orders {
+            let number = buffer(bytemuck::bytes_of(&[order, orders, inputs.slot, 0]), BufferUsages::UNIFORM);
+            let group = bind(
+                gpu,
+                &self.layout,
+                [
+                    (0, BindingResource::Buffer(inputs.air.clone())),
+                    (1, BindingResource::TextureView(inputs.transmittance)),
+                    (2, BindingResource::Sampler(inputs.linear)),
+                    (3, number.as_entire_binding()),
+                    (4, plan.as_entire_binding()),
+                    (5, self.gathered.as_entire_binding()),
+                    (6, self.sources.as_entire_binding()),
+                    (7, self.irradiance.as_entire_binding()),
+                ],
+            );
+            pass.set_bind_group(0, &group, &[]);
+            pass.set_pipeline(if order == 0 { &self.first } else { &self.next });
+            pass.dispatch_workgroups(directions, altitudes, 1);
+            pass.set_pipeline(&self.turn);
+            pass.dispatch_workgroups(views, altitudes, 1);
+        }
+        let number = buffer(bytemuck::bytes_of(&[0, orders, inputs.slot, 0]), BufferUsages::UNIFORM);
+        let group = bind(
+            gpu,
+            &self.sum_layout,
+            [
+                (3, number.as_entire_binding()),
+                (4, self.sources.as_entire_binding()),
+                (5, self.irradiance.as_entire_binding()),
+                (6, self.scalars.as_entire_binding()),
+                (7, BindingResource::TextureView(&self.view())),
+                (8, BindingResource::TextureView(inputs.irradiance)),
+            ],
+        );
+        pass.set_bind_group(0, &group, &[]);
+        pass.set_pipeline(&self.products);
+        pass.dispatch_workgroups(orders - 1, orders, 1);
+        pass.set_pipeline(&self.sum);
+        pass.dispatch_workgroups(views, altitudes, 1);
+    }
+}
+
+const fn buffer_entry(binding: u32, ty: wgpu::BufferBindingType) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::COMPUTE,
+        ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None },
+        count: None,
+    }
+}
+
+fn bind<const N: usize>(gpu: &Gpu, layout: &wgpu::BindGroupLayout, resources: [(u32, BindingResource<'_>); N]) -> wgpu::BindGroup {
+    let entries = resources.map(|(binding, resource)| BindGroupEntry { binding, resource });
+    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("air orders"), layout, entries: &entries })
+}

@@ -1,0 +1,168 @@
+//! A planet alone, for probes and benches: `F.toml` with its radius, its star at three wavelengths, and its air as in `atmosphere.toml`.
+//!
+//! ```toml
+//! radius_km = 6360.0
+//! [star]
+//! wavelengths_nm = [680.0, 550.0, 440.0]        # the three channels of the air's coefficients, in this order
+//! irradiance_w_m2_nm = [1.474, 1.8504, 1.91198] # above the air
+//! angular_radius_deg = 0.2678
+//! [atmosphere]                                  # or: atmosphere = "FILE"
+//! top_altitude_m = 60000.0
+//! # … all keys of atmosphere.toml
+//! ```
+//! Not here: bodies of a system ([`super::body`]); the keys of an air ([`super::atmosphere::keys`]).
+
+use super::atmosphere::{Datum, Setting, read_air};
+use super::fault::{AssetErrors, Fault};
+use super::overlay::read_text;
+use super::reader::{Faults, POSITIVE, Reader};
+use super::tree::{Data, Entry, Node, parse};
+use engine::air::Air;
+use engine::light::spectrum::Starlight;
+use engine::units::{DEG, KM};
+use std::path::Path;
+
+/// The star as the planet sees it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Star {
+    /// Wavelengths of the three channels, nm.
+    pub wavelengths_nm: [f64; 3],
+    /// Irradiance above the air at each, W m⁻² nm⁻¹.
+    pub irradiance_w_m2_nm: [f64; 3],
+    /// Angular radius, rad.
+    pub angular_radius_rad: f64,
+}
+
+/// A planet alone.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Planet {
+    /// Its star.
+    pub star: Star,
+    /// Its air, by the model that was asked for.
+    pub air: Air,
+}
+
+/// Reads a planet; `model` stands for what its air names. The settings of that model are those in the file's table of its name, or its own.
+pub fn read_planet(path: &Path, model: Option<&str>) -> Result<Planet, AssetErrors> {
+    let mut top = tree(path)?;
+    let mut elsewhere = match top.get("atmosphere").and_then(|e| e.value.text()) {
+        Some(file) => Some(tree(&path.parent().unwrap_or(Path::new("")).join(file))?),
+        None => None,
+    };
+    if let (Some(word), Some(air)) = (model, elsewhere.as_mut().or_else(|| inside(&mut top))) {
+        name_model(air, word);
+    }
+    let faults = Faults::default();
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let planet = read(Reader::new(&top, &faults), elsewhere.as_ref(), folder, &faults);
+    let found = AssetErrors { faults: faults.into_inner() };
+    for warning in found.faults.iter().filter(|f| !f.is_error()) {
+        tracing::warn!("{warning}");
+    }
+    found.or(())?;
+    planet.ok_or_else(|| AssetErrors::one(Fault::file(path, "the planet has no air that is seen: expected a `model` other than \"none\"")))
+}
+
+fn tree(path: &Path) -> Result<Node, AssetErrors> {
+    let source = read_text(path).map_err(AssetErrors::one)?;
+    parse(&source).map_err(|faults| AssetErrors { faults })
+}
+
+fn inside(top: &mut Node) -> Option<&mut Node> {
+    let Data::Table(entries) = &mut top.data else { return None };
+    entries.iter_mut().find(|e| e.key == "atmosphere").map(|e| &mut e.value)
+}
+
+fn name_model(air: &mut Node, word: &str) {
+    let at = air.at.clone();
+    let Data::Table(entries) = &mut air.data else { return };
+    entries.retain(|e| e.key != "model");
+    let value = Node { at: at.clone(), data: Data::Text(word.to_owned()) };
+    entries.push(Entry { key: "model".to_owned(), key_at: at, value });
+}
+
+fn read(r: Reader<'_>, elsewhere: Option<&Node>, folder: &Path, faults: &Faults) -> Option<Planet> {
+    let radius_m = r.number("radius_km", POSITIVE) * KM;
+    let star = r.table("star").map(|t| {
+        let wavelengths_nm: [f64; 3] = t.numbers("wavelengths_nm", 1.0..=1e6);
+        let [a, b, c] = wavelengths_nm;
+        if a == b || b == c || c == a {
+            t.wrong("wavelengths_nm", "`star.wavelengths_nm`: expected three different wavelengths");
+        }
+        let star = Star {
+            wavelengths_nm,
+            irradiance_w_m2_nm: t.numbers("irradiance_w_m2_nm", 0.0..=1e9),
+            angular_radius_rad: t.number("angular_radius_deg", f64::MIN_POSITIVE..=89.0) * DEG,
+        };
+        t.finish();
+        star
+    });
+    // Nothing is dragged here: gravity only serves the plausibility of `[physics]`, and stands for Earth's.
+    let gm_m3_s2 = 9.8 * radius_m * radius_m;
+    let datum = Datum::new(gm_m3_s2, radius_m);
+    let beside = |name: &str| Some(folder.join(name)).filter(|p| p.is_file());
+    let star_light = Starlight::default();
+    let setting = Setting { beside: &beside, star: &star_light };
+    let air = match elsewhere {
+        Some(node) => {
+            r.text("atmosphere");
+            read_air(&Reader::new(node, faults), datum, &setting)
+        }
+        None => r.table("atmosphere").map(|t| read_air(&t, datum, &setting)).unwrap_or_default(),
+    };
+    r.finish();
+    Some(Planet { star: star?, air: air.look? })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use engine::air::Model;
+
+    const EARTH: &str = include_str!("../../../tests/reference/planets/earth.toml");
+
+    fn planet(text: &str, model: Option<&str>) -> Result<Planet, AssetErrors> {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("p.toml");
+        std::fs::write(&path, text).unwrap();
+        read_planet(&path, model)
+    }
+
+    #[test]
+    fn a_planet_is_read() {
+        let earth = planet(EARTH, None).unwrap();
+        assert_eq!(earth.air.medium.bottom_radius_m, 6.36e6);
+        assert_eq!(earth.air.medium.layers.len(), 3);
+        assert_eq!(earth.star.wavelengths_nm, [680.0, 550.0, 440.0]);
+        assert!((earth.star.angular_radius_rad / DEG - 0.2678).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_air_may_lie_in_a_file_of_its_own_and_be_drawn_otherwise() {
+        let dir = tempfile::tempdir().unwrap();
+        let (head, air) = EARTH.split_once("[atmosphere]").unwrap();
+        let air = format!("model = \"none\"\n{}", air.replace("[[atmosphere.layers]]", "[[layers]]"));
+        std::fs::write(dir.path().join("air.toml"), air).unwrap();
+        let path = dir.path().join("p.toml");
+        let (first, rest) = head.split_once("[star]").unwrap();
+        std::fs::write(&path, format!("{first}atmosphere = \"air.toml\"\n[star]{rest}")).unwrap();
+        assert!(read_planet(&path, None).unwrap_err().text().contains("other than"));
+        let planet = read_planet(&path, Some("physical")).unwrap();
+        assert!(matches!(planet.air.model, Model::Physical(_)));
+        assert_eq!(planet.air.medium, super::tests::planet(EARTH, None).unwrap().air.medium);
+    }
+
+    #[test]
+    fn faults_are_told_with_their_lines() {
+        let wrong = |from: &str, to: &str| {
+            assert!(EARTH.contains(from));
+            planet(&EARTH.replacen(from, to, 1), None).unwrap_err().text()
+        };
+        let text = wrong("radius_km = 6360.0", "radius = 6360.0");
+        assert!(text.contains("missing key `radius_km`") && text.contains("p.toml"), "{text}");
+        let text = wrong("680.0, 550.0", "680.0, 680.0");
+        assert!(text.contains("three different wavelengths"), "{text}");
+        let text = wrong("g = 0.8", "g = 1.8");
+        assert!(text.contains("1.8"), "{text}");
+    }
+}
