@@ -52,7 +52,9 @@ pub enum Mode {
     #[command(after_help = "Example:\n  syzygy shot --start eclipse --camera chase --size 1280x720 --out shot.png --passes passes.json")]
     Shot(ShotArgs),
     /// Validate a system, body or mod folder and list every error
-    #[command(after_help = "Examples:\n  syzygy check-assets mods/my-moon\n  syzygy check-assets --schema atmosphere > atmosphere.schema.json")]
+    #[command(
+        after_help = "Examples:\n  syzygy check-assets mods/my-moon\n  syzygy check-assets --schema atmosphere > atmosphere.schema.json"
+    )]
     CheckAssets(CheckAssetsArgs),
     /// Ask the simulation for numbers, as JSON or CSV
     #[command(subcommand, after_help = "Example:\n  syzygy probe air --body earth --altitude-m 0 11000 50000")]

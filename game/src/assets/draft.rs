@@ -60,7 +60,8 @@ impl Draft {
         let relative = format!("bodies/{body}/atmosphere.toml");
         let patch = format!("bodies/{body}/atmosphere.patch.toml");
         let roots = overlay.roots();
-        let nowhere = || AssetErrors::one(Fault::file(&overlay.expected(&relative), "no mod is laid over the assets that it could be written into"));
+        let nowhere =
+            || AssetErrors::one(Fault::file(&overlay.expected(&relative), "no mod is laid over the assets that it could be written into"));
         let root = match target {
             Target::Assets => roots.first(),
             Target::Mod => roots.get(1..).and_then(<[PathBuf]>::last),
@@ -219,13 +220,28 @@ pub fn first_air(radius_m: f64) -> Value {
 /// A layer to begin with, of a name in [`LAYERS`].
 pub fn layer(kind: &str) -> Value {
     let (scattering, absorption, profile, phase) = match kind {
-        "gas" => ([5.8e-6, 13.56e-6, 33.1e-6], [0.0; 3], json!({ "kind": "exponential", "scale_height_m": 8000.0 }), json!({ "kind": "rayleigh" })),
+        "gas" => (
+            [5.8e-6, 13.56e-6, 33.1e-6],
+            [0.0; 3],
+            json!({ "kind": "exponential", "scale_height_m": 8000.0 }),
+            json!({ "kind": "rayleigh" }),
+        ),
         "absorber" => {
             let tent = json!({ "kind": "tent", "bottom_m": 10_000.0, "peak_m": 25_000.0, "top_m": 40_000.0 });
             ([0.0; 3], [1.6e-6, 1.8e-6, 1.2e-7], tent, json!({ "kind": "isotropic" }))
         }
-        "fog" => ([1e-3; 3], [0.0; 3], json!({ "kind": "constant", "bottom_m": 0.0, "top_m": 300.0 }), json!({ "kind": "henyey_greenstein", "g": 0.8 })),
-        _ => ([4e-6; 3], [4.4e-7; 3], json!({ "kind": "exponential", "scale_height_m": 1200.0 }), json!({ "kind": "cornette_shanks", "g": 0.8 })),
+        "fog" => (
+            [1e-3; 3],
+            [0.0; 3],
+            json!({ "kind": "constant", "bottom_m": 0.0, "top_m": 300.0 }),
+            json!({ "kind": "henyey_greenstein", "g": 0.8 }),
+        ),
+        _ => (
+            [4e-6; 3],
+            [4.4e-7; 3],
+            json!({ "kind": "exponential", "scale_height_m": 1200.0 }),
+            json!({ "kind": "cornette_shanks", "g": 0.8 }),
+        ),
     };
     json!({ "name": kind, "scattering_per_m": scattering, "absorption_per_m": absorption, "profile": profile, "phase": phase })
 }

@@ -206,7 +206,10 @@ fn read_atmosphere(overlay: &Overlay, body: &str, datum: Datum, star: &Starlight
     if let Some(physics) = tree.get("physics") {
         physics.value.digest(&mut hash);
     }
-    (read_air(&Reader::new(&tree, faults), datum, &Setting { beside: &|name| overlay.find(format!("bodies/{body}/{name}")), star }), hash.finalize().to_hex().to_string())
+    (
+        read_air(&Reader::new(&tree, faults), datum, &Setting { beside: &|name| overlay.find(format!("bodies/{body}/{name}")), star }),
+        hash.finalize().to_hex().to_string(),
+    )
 }
 
 /// Feeds a file's values to the hash, but for what a flight does not depend on.

@@ -67,7 +67,8 @@ fn lists(old: &[Value], new: &[Value], whole: &Value) -> Option<Value> {
     }
     // What is added stands last: another order can only be had by writing the list anew.
     let kept = before.iter().filter(|n| after.contains(n));
-    let in_order = kept.eq(after.iter().filter(|n| before.contains(n))) && after.iter().skip(after.len() - added.len()).all(|n| !before.contains(n));
+    let in_order =
+        kept.eq(after.iter().filter(|n| before.contains(n))) && after.iter().skip(after.len() - added.len()).all(|n| !before.contains(n));
     if !in_order {
         return Some(whole.clone());
     }

@@ -244,6 +244,14 @@ const GRADIENT: &[Field] = &[
     may("transparency", Kind::Number(Span::linear(0.0, 1.0)), "how strong the air's colour can become over the ground"),
     may("brightness", Kind::Number(Span::log(0.0, 100.0)), "of the map's white; 1 is a white surface that faces the sun"),
     may("opacity", Kind::Number(Span::linear(0.0, 1.0)), "how much of the sky behind the shell is hidden where it is strongest"),
-    may(MAPS[0], Kind::File, "PNG, 32 × 16 texels as a rule. Left: away from the sun, right: toward it; bottom: at the surface, top: at the edge"),
-    may(MAPS[1], Kind::File, "PNG, 32 × 2 texels. Top row: the air's colour; bottom row: by what the sun's is multiplied. Left: midnight, right: noon"),
+    may(
+        MAPS[0],
+        Kind::File,
+        "PNG, 32 × 16 texels as a rule. Left: away from the sun, right: toward it; bottom: at the surface, top: at the edge",
+    ),
+    may(
+        MAPS[1],
+        Kind::File,
+        "PNG, 32 × 2 texels. Top row: the air's colour; bottom row: by what the sun's is multiplied. Left: midnight, right: noon",
+    ),
 ];

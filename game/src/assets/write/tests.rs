@@ -67,7 +67,8 @@ fn a_changed_kind_an_added_layer_a_removed_one_and_a_removed_key() {
 
 #[test]
 fn comments_and_layout_stay() {
-    let written = "# My Mars.\ntop_altitude_m = 9e4 # low\n\n# Bluer.\n[layers.dust]\nscattering_per_m = [\n  1e-5, 2e-5, 3e-5, # by eye\n]\n";
+    let written =
+        "# My Mars.\ntop_altitude_m = 9e4 # low\n\n# Bluer.\n[layers.dust]\nscattering_per_m = [\n  1e-5, 2e-5, 3e-5, # by eye\n]\n";
     let mut now = mars();
     now["top_altitude_m"] = json!(90_000.0);
     now["layers"][1]["scattering_per_m"] = json!([1e-5, 2e-5, 3e-5]);
@@ -82,7 +83,8 @@ fn comments_and_layout_stay() {
 
 #[test]
 fn a_file_s_own_layers_keep_their_comments_by_name() {
-    let file = "top_altitude_m = 1e5\n\n# Molecules.\n[[layers]]\nname = \"gas\" # CO2\nx = 1\n\n# Grains.\n[[layers]]\nname = \"dust\"\nx = 2\n";
+    let file =
+        "top_altitude_m = 1e5\n\n# Molecules.\n[[layers]]\nname = \"gas\" # CO2\nx = 1\n\n# Grains.\n[[layers]]\nname = \"dust\"\nx = 2\n";
     let now = json!({ "top_altitude_m": 1e5, "layers": [{ "name": "dust", "x": 3 }] });
     let text = into_text(file, object(&now)).unwrap();
     assert_eq!(text, "top_altitude_m = 1e5\n\n# Grains.\n[[layers]]\nname = \"dust\"\nx = 3\n");
@@ -97,11 +99,12 @@ fn tree() -> impl Strategy<Value = Value> {
         prop::collection::vec(0.0..1.0_f64, 1..4).prop_map(Value::from),
     ];
     let table = prop::collection::btree_map("[a-d]", leaf.clone(), 0..4).prop_map(|m| Value::Object(m.into_iter().collect()));
-    let item = (prop::sample::select(vec!["p", "q", "r", "s"]), prop::collection::btree_map("[a-c]", leaf.clone(), 1..3)).prop_map(|(n, m)| {
-        let mut m: Map<String, Value> = m.into_iter().collect();
-        m.insert("name".to_owned(), n.into());
-        Value::Object(m)
-    });
+    let item =
+        (prop::sample::select(vec!["p", "q", "r", "s"]), prop::collection::btree_map("[a-c]", leaf.clone(), 1..3)).prop_map(|(n, m)| {
+            let mut m: Map<String, Value> = m.into_iter().collect();
+            m.insert("name".to_owned(), n.into());
+            Value::Object(m)
+        });
     let list = prop::collection::vec(item, 1..4).prop_map(Value::Array);
     // A key has values of one kind, as in every file.
     (option::of(leaf.clone()), option::of(leaf), option::of(table), option::of(list)).prop_map(|(e, f, g, h)| {

@@ -67,7 +67,8 @@ pub fn show(ctx: &egui::Context, editor: &mut Editor, body: &str, screen: &mut S
             });
             ui.horizontal(|ui| {
                 ui.label("clock, h");
-                ui.add(Slider::new(&mut editor.hours, -12.0..=12.0).step_by(0.02)).on_hover_text("moves the sun in the picture, not in the flight");
+                ui.add(Slider::new(&mut editor.hours, -12.0..=12.0).step_by(0.02))
+                    .on_hover_text("moves the sun in the picture, not in the flight");
             });
             let Some(draft) = &mut editor.draft else {
                 ui.label(style::note("There is no air to edit here."));
@@ -188,7 +189,8 @@ fn layers(ui: &mut Ui, values: &mut Map<String, Value>) -> Done {
                 // Of the ways to describe a layer only the one that is taken has sliders.
                 let absent: Vec<&str> = ["gas", "aerosol", "absorber", "table"].into_iter().filter(|k| !layer.contains_key(*k)).collect();
                 let by_coefficients = absent.len() == 4;
-                let but: Vec<&str> = absent.into_iter().chain(["scattering_per_m", "absorption_per_m"].into_iter().filter(|_| !by_coefficients)).collect();
+                let but: Vec<&str> =
+                    absent.into_iter().chain(["scattering_per_m", "absorption_per_m"].into_iter().filter(|_| !by_coefficients)).collect();
                 done.and(widgets::table(ui, keys::LAYER, layer, &Value::Null, &but));
                 if ui.button("Remove this layer").clicked() {
                     gone = Some(i);

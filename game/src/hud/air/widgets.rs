@@ -104,7 +104,8 @@ fn widget(ui: &mut Ui, field: &'static Field, value: &mut Value) -> Done {
         Kind::OneOrRgb(span) => {
             let mut three = value.is_array();
             if ui.checkbox(&mut three, "by channel").changed() {
-                *value = if three { json!([value.clone(), value.clone(), value.clone()]) } else { value.get(0).cloned().unwrap_or(Value::Null) };
+                *value =
+                    if three { json!([value.clone(), value.clone(), value.clone()]) } else { value.get(0).cloned().unwrap_or(Value::Null) };
                 done.click();
             }
             done.and(if three { channels(ui, span, value) } else { number(ui, span, value, "") });
@@ -171,7 +172,8 @@ fn whole(x: f64) -> Value {
 fn number(ui: &mut Ui, span: &Span, value: &mut Value, name: &str) -> Done {
     let mut done = Done::default();
     let mut x = value.as_f64().unwrap_or(span.min);
-    let mut slider = Slider::new(&mut x, span.min..=span.max).text(name).custom_formatter(|x, _| digits(x)).custom_parser(|s| s.trim().parse().ok());
+    let mut slider =
+        Slider::new(&mut x, span.min..=span.max).text(name).custom_formatter(|x, _| digits(x)).custom_parser(|s| s.trim().parse().ok());
     if span.log {
         slider = slider.logarithmic(true).smallest_positive(1e-9);
     }
