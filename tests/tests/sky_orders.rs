@@ -92,7 +92,8 @@ fn irradiance(table: &[f32], medium: &Medium, altitude_m: f64, mu_s: f64) -> DVe
     let r = medium.bottom_radius_m + altitude_m;
     let (sine_dip, cosine_dip) = ((1.0 - (medium.bottom_radius_m / r) * (medium.bottom_radius_m / r)).sqrt(), medium.bottom_radius_m / r);
     let elevation = (mu_s * cosine_dip + (1.0 - mu_s * mu_s).sqrt() * sine_dip).asin();
-    let x = (((2.0 * (0.5 * elevation).sin() * map.scale).asinh() + map.low) * map.inverse * (SUNS - 1) as f64).clamp(0.0, (SUNS - 1) as f64);
+    let x =
+        (((2.0 * (0.5 * elevation).sin() * map.scale).asinh() + map.low) * map.inverse * (SUNS - 1) as f64).clamp(0.0, (SUNS - 1) as f64);
     let y = (altitude_m / medium.top_altitude_m).sqrt() * (ALTITUDES - 1) as f64;
     let (i, j) = ((x as usize).min(SUNS - 2), (y as usize).min(ALTITUDES - 2));
     let (a, b) = (x - i as f64, y - j as f64);
