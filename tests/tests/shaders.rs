@@ -78,7 +78,8 @@ fn mirrored_structs_have_the_layout_of_their_twins() {
                 tent_top,
                 tent_fall,
                 asymmetry,
-                orders
+                orders,
+                bands
             }),
         ),
         ("lib/medium.wgsl", "Airs", fields!(rust::AirsUniform { list })),
