@@ -253,9 +253,6 @@ pub enum Bench {
     /// Every integrator on every case of the reference data: error against CPU time and evaluations
     #[command(after_help = "Example:\n  syzygy bench orbit --case LEO_1000orb --method gauss_radau --json leo.json --plot plots")]
     Orbit(BenchOrbitArgs),
-    /// How far the colours of each air are from those of all wavelengths, drawn in three channels and in six bands
-    #[command(after_help = "Example:\n  syzygy bench air --spectral --json colours.json")]
-    Air(BenchAirArgs),
     /// What choosing the terms of gravity by an error bound costs in error and saves in time
     #[command(after_help = "Example:\n  syzygy bench ships --json ships.json")]
     Ships(BenchShipsArgs),
@@ -265,6 +262,9 @@ pub enum Bench {
     /// What the places of the bodies cost: a question, the first year, 1900 to 2100
     #[command(after_help = "Example:\n  syzygy bench ephemeris --json ephemeris.json")]
     Ephemeris(BenchEphemerisArgs),
+    /// What the air costs to draw, and how true its colours are
+    #[command(after_help = "Example:\n  syzygy bench air --elek --json elek.json\n  syzygy bench air --spectral --json colours.json")]
+    Air(BenchAirArgs),
 }
 
 /// Arguments that all probes share.

@@ -77,7 +77,9 @@ fn mirrored_structs_have_the_layout_of_their_twins() {
                 tent_rise,
                 tent_top,
                 tent_fall,
-                asymmetry,
+                phases,
+                jumps_low,
+                jumps_high,
                 orders,
                 bands
             }),

@@ -65,7 +65,7 @@ fn probe_ray(h: f64, phi: f64, delta: f64, azimuth_deg: f64, surface_m: f64) -> 
 
 fn errors(model: &ViewTable) -> (f64, f64) {
     let medium = medium();
-    let split = Split::new(&medium.layers, medium.top_altitude_m);
+    let split = Split::new(&medium);
     let views = views();
     let rays: Vec<ProbeRay> = views.iter().map(|v| probe_ray(v.0, v.1, v.2, v.3, 0.0)).collect();
     let (mut sum, mut worst, mut n) = (0.0, 0.0_f64, 0.0);
@@ -73,7 +73,7 @@ fn errors(model: &ViewTable) -> (f64, f64) {
         let (h, phi, delta, _) = *view;
         let entry = model.entry(&medium, &split, h, phi, delta);
         let nu = (0..3).map(|i| f64::from(ray.ray[i]) * f64::from(ray.sun[i])).sum::<f64>();
-        let truth = model.radiance(&medium, &split, entry, nu);
+        let truth = model.radiance(&split, entry, nu);
         if truth.y > 1e-5 {
             let error = (f64::from(light.radiance[1]) / truth.y - 1.0).abs();
             if error > 0.1 {
@@ -111,15 +111,12 @@ fn the_difference_of_two_depths_keeps_its_digits() {
                 let r = medium.bottom_radius_m + h;
                 let there = (r * r + 2.0 * r * mu * distance + distance * distance).sqrt() - medium.bottom_radius_m;
                 // Only what lies above the ground on the way, too.
-                if there < 0.0
-                    || there > medium.top_altitude_m
-                    || (mu < 0.0 && distance > -r * mu && r * (1.0 - mu * mu).sqrt() < medium.bottom_radius_m)
-                {
+                if there < 0.0 || there > medium.top_altitude_m || (mu < 0.0 && distance > -r * mu && r * (1.0 - mu * mu).sqrt() < medium.bottom_radius_m) {
                     continue;
                 }
                 rays.push(probe_ray(h, f64::acos(mu), 0.6, 20.0, distance));
                 let ray = DVec3::new((1.0 - mu * mu).sqrt(), 0.0, mu);
-                truths.push((h, mu, distance, reference::optical_depth(&medium, DVec3::Z * r, ray, (0.0, distance), 1e-6)));
+                truths.push((h, mu, distance, reference::optical_depth(&medium, DVec3::Z * r, ray, (0.0, distance), 1e-9)));
             }
         }
     }
@@ -149,10 +146,12 @@ fn before_a_surface_there_is_its_share_of_the_air() {
             rays.push(probe_ray(h, phi, 0.6, 0.0, distance));
             let (from, ray) = (DVec3::Z * (medium.bottom_radius_m + h), DVec3::new(phi.sin(), 0.0, phi.cos()));
             // What is seen to the end of the air, less what is seen from the surface on.
-            let sight = |from_m: DVec3| reference::Ray { from_m, direction: ray, sun, sun_rad: ViewTable::SUN_RAD, occluders: Vec::new() };
-            let only_once = reference::Options { max_walks: 0, ..Default::default() };
-            let seen = |from: DVec3| reference::radiance(&medium, &[sight(from)], &only_once)[0].single;
-            let through = (-reference::optical_depth(&medium, from, ray, (0.0, distance), 1e-6)).exp();
+            let seen = |from_m: DVec3| {
+                let ray = reference::Ray { from_m, direction: ray, sun, sun_rad: ViewTable::SUN_RAD, occluders: Vec::new() };
+                let options = reference::Options { max_walks: 0, single_error: 1e-6, ..reference::Options::default() };
+                reference::radiance(&medium, &[ray], &options)[0].single
+            };
+            let through = (-reference::optical_depth(&medium, from, ray, (0.0, distance), 1e-8)).exp();
             truths.push(seen(from) - through * seen(from + ray * distance));
         }
     }
@@ -191,8 +190,7 @@ fn nothing_is_nan_wherever_one_stands() {
             }
         }
         for (ray, light) in rays.iter().zip(ask(&medium, &ViewTable { samples: 12, ..ViewTable::default() }, &rays)) {
-            let fine =
-                light.radiance.iter().all(|x| x.is_finite() && *x >= 0.0) && light.transmittance.iter().all(|x| (0.0..=1.0).contains(x));
+            let fine = light.radiance.iter().all(|x| x.is_finite() && *x >= 0.0) && light.transmittance.iter().all(|x| (0.0..=1.0).contains(x));
             assert!(fine, "{ray:?}: {light:?}");
         }
     }

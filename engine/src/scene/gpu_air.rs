@@ -196,7 +196,7 @@ impl ViewTableUniform {
         let flag = |on: bool| if on { 1.0 } else { 0.0 };
         let mut all = Self::zeroed();
         let first = split.in_rgb.iter().position(|r| *r);
-        for (i, in_rgb) in split.in_rgb.iter().enumerate().take(AirUniform::LAYERS) {
+        for (i, in_rgb) in split.in_rgb.iter().enumerate().take(Classes::MAX) {
             all.rgb[i] = flag(*in_rgb);
             all.alpha[i] = flag(!in_rgb);
             all.rgb_phase[i] = flag(first == Some(i));

@@ -188,11 +188,11 @@ fn places_of(mode: &Mode) -> &Places {
         Mode::Probe(Probe::Eclipses(a)) => &a.common.places,
         Mode::Probe(Probe::Propagate(a)) => &a.common.places,
         Mode::Probe(Probe::Sky(a)) => &a.places,
-        Mode::Bench(Bench::Air(a)) => &a.places,
         Mode::Bench(Bench::Orbit(a)) => &a.places,
         Mode::Bench(Bench::Ships(a)) => &a.places,
         Mode::Bench(Bench::Kepler(a)) => &a.places,
         Mode::Bench(Bench::Ephemeris(a)) => &a.places,
+        Mode::Bench(Bench::Air(a)) => &a.places,
     }
 }
 

@@ -216,4 +216,14 @@ const VIEW_TABLE: &[Field] = &[
     may("samples", Kind::Whole(Span::log(2.0, 500.0)), "samples along a ray of sight"),
     may("depth_samples", Kind::Whole(Span::log(2.0, 500.0)), "samples of an optical depth"),
     may("ambient_samples", Kind::Whole(Span::log(2.0, 128.0)), "directions of the sky's light, each way"),
+    may(
+        "spacing",
+        Kind::Choice(&[("graded", "dense at the horizon, the ground and the terminator"), ("uniform", "even in height and angles, as in the thesis")]),
+        "how table entries and samples lie",
+    ),
+    may(
+        "alpha_colour",
+        Kind::Choice(&[("proportional", "reddened as the air beside it is"), ("grey", "the particles' own colour, as in the thesis")]),
+        "how the aerosol's light gets its colour",
+    ),
 ];

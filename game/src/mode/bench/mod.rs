@@ -4,6 +4,7 @@
 //! Not here: the numbers that probes give ([`super::probe`]), the tests that hold them.
 
 pub mod air_spectral;
+pub mod elek;
 pub mod ephemeris;
 pub mod kepler;
 pub mod orbit;
@@ -21,13 +22,14 @@ use crate::cli::Bench;
 /// Runs a bench.
 pub fn run(bench: &Bench) -> Result<(), Error> {
     match bench {
-        Bench::Air(args) => {
+        Bench::Air(args) if args.spectral => {
             let rows = air_spectral::rows(&Stage::set(&args.places)?.assets, &args.body)?;
             Ok(orbit_rows::write(&rows, args.json.as_deref())?)
         }
         Bench::Orbit(args) => orbit::run(args),
         Bench::Ships(args) => ships::run(args),
         Bench::Ephemeris(args) => ephemeris::run(args),
+        Bench::Air(args) => elek::run(args),
         Bench::Kepler(args) => Ok(orbit_rows::write(&kepler::rows(), args.json.as_deref())?),
     }
 }

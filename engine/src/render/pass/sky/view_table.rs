@@ -6,34 +6,20 @@
 use super::{Painter, PainterKind, Parts, no_settings};
 use crate::air::model::ViewTable as Settings;
 use crate::air::model::view_table::Split;
-use crate::air::{Air, Medium, Model};
+use crate::air::{Air, Classes, Medium, Model};
 use crate::gpu::Gpu;
 use crate::gpu::buffer::Uniform;
 use crate::gpu::texture::Texture;
 use crate::render::RenderError;
-use crate::render::pipeline::{compute_pipeline, texture_entry, uniform_entry};
+use crate::render::pipeline::{compute_pipeline, loaded_entry, texture_entry, uniform_entry};
 use crate::render::targets::HDR;
 use crate::scene::Body;
-use crate::scene::gpu_data::{AirUniform, SkySettings, ViewTableUniform};
+use crate::scene::gpu_data::{AirUniform, MEDIA_COLUMNS, MEDIA_ROWS, SkySettings, ViewTableUniform, media_rows};
 use std::collections::BTreeMap;
 use wgpu::{BindGroupEntry, BindGroupLayoutEntry, BindingResource, ShaderStages, TextureFormat, TextureUsages, TextureViewDimension};
 
 /// Bodies whose tables are kept while others are drawn: a full table has 128 MiB.
 const KEPT: usize = 4;
-
-/// A texture that is loaded, not sampled.
-const fn loaded(binding: u32) -> BindGroupLayoutEntry {
-    BindGroupLayoutEntry {
-        binding,
-        visibility: ShaderStages::all(),
-        ty: wgpu::BindingType::Texture {
-            sample_type: wgpu::TextureSampleType::Float { filterable: false },
-            view_dimension: TextureViewDimension::D2,
-            multisampled: false,
-        },
-        count: None,
-    }
-}
 
 const fn storage(binding: u32, format: TextureFormat, view_dimension: TextureViewDimension) -> BindGroupLayoutEntry {
     BindGroupLayoutEntry {
@@ -47,16 +33,15 @@ const fn storage(binding: u32, format: TextureFormat, view_dimension: TextureVie
 /// Compiles it.
 pub fn make(parts: &Parts<'_>) -> Result<Box<dyn Painter>, RenderError> {
     let Parts { gpu, shaders, .. } = parts;
-    let own = [uniform_entry(0), texture_entry(1, TextureViewDimension::D3), loaded(2)];
+    let own = [uniform_entry(0), texture_entry(1, TextureViewDimension::D3), loaded_entry(2, TextureViewDimension::D2)];
     let kind = PainterKind::new(parts, "pass/sky_view_table.wgsl", &own)?;
-    let entries = [
-        [uniform_entry(0), uniform_entry(1), storage(2, TextureFormat::Rgba32Float, TextureViewDimension::D2), loaded(3)],
-        [uniform_entry(0), uniform_entry(1), storage(2, HDR, TextureViewDimension::D3), loaded(3)],
-    ];
+    let (flat, array) = (TextureViewDimension::D2, TextureViewDimension::D2Array);
     // The table of depths reads none.
-    let layouts = [0, 1].map(|i| {
-        let count = if i == 0 { 3 } else { 4 };
-        gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("view bake"), entries: &entries[i][..count] })
+    let depth = [uniform_entry(0), uniform_entry(1), storage(2, TextureFormat::Rgba32Float, flat), loaded_entry(4, array)];
+    let scatter =
+        [uniform_entry(0), uniform_entry(1), storage(2, HDR, TextureViewDimension::D3), loaded_entry(3, flat), loaded_entry(4, array)];
+    let layouts = [&depth[..], &scatter[..]].map(|entries| {
+        gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("view bake"), entries })
     });
     let bake = |layout: &wgpu::BindGroupLayout, file: &str| -> Result<_, RenderError> {
         Ok(compute_pipeline(gpu, file, &shaders.load(&gpu.device, file)?, &[layout], "bake"))
@@ -99,7 +84,11 @@ impl Tables {
             .device
             .create_texture(&wgpu::TextureDescriptor {
                 label: Some("view table: scattering"),
-                size: wgpu::Extent3d { width: settings.view_size, height: settings.sun_size, depth_or_array_layers: settings.height_size },
+                size: wgpu::Extent3d {
+                    width: settings.view_size,
+                    height: settings.sun_size,
+                    depth_or_array_layers: settings.height_size,
+                },
                 mip_level_count: 1,
                 sample_count: 1,
                 dimension: wgpu::TextureDimension::D3,
@@ -109,7 +98,7 @@ impl Tables {
             })
             .create_view(&wgpu::TextureViewDescriptor::default());
         let uniform = Uniform::new(&gpu.device, "ViewTable", wgpu::BufferUsages::empty());
-        uniform.write(&gpu.queue, &ViewTableUniform::new(settings, &Split::new(&medium.layers, medium.top_altitude_m)));
+        uniform.write(&gpu.queue, &ViewTableUniform::new(settings, &Split::new(medium)));
         let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("group 3: view_table"),
             layout: &kind.own_layout,
@@ -161,20 +150,23 @@ impl Painter for ViewTable {
     fn bake(&mut self, gpu: &Gpu, pass: &mut wgpu::ComputePass<'_>) {
         for tables in self.tables.values_mut().filter(|t| !t.baked) {
             tables.baked = true;
+            let classes = Classes::of(&tables.medium);
             let air = Uniform::new(&gpu.device, "view bake: Air", wgpu::BufferUsages::empty());
-            air.write(&gpu.queue, &AirUniform::new(&tables.medium));
+            air.write(&gpu.queue, &AirUniform::new(&tables.medium, &classes));
+            let media = media(gpu, &tables.medium, &classes).array_view();
             let s = &tables.settings;
             let sizes = [[s.depth_angle_size, s.depth_height_size, 1], [s.view_size, s.sun_size, s.height_size]];
             for (i, output) in [&tables.depth.view, &tables.scatter].into_iter().enumerate() {
-                let resources = [
-                    air.buffer.as_entire_binding(),
-                    tables.uniform.buffer.as_entire_binding(),
-                    BindingResource::TextureView(output),
-                    BindingResource::TextureView(&tables.depth.view),
+                let entry = |binding, resource| BindGroupEntry { binding, resource };
+                let mut entries = vec![
+                    entry(0, air.buffer.as_entire_binding()),
+                    entry(1, tables.uniform.buffer.as_entire_binding()),
+                    entry(2, BindingResource::TextureView(output)),
+                    entry(4, BindingResource::TextureView(&media)),
                 ];
-                let count = if i == 0 { 3 } else { 4 };
-                let entries: Vec<_> =
-                    (0..).zip(resources).take(count).map(|(binding, resource)| BindGroupEntry { binding, resource }).collect();
+                if i > 0 {
+                    entries.push(entry(3, BindingResource::TextureView(&tables.depth.view)));
+                }
                 let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
                     label: Some("view bake"),
                     layout: &self.layouts[i],
@@ -186,4 +178,16 @@ impl Painter for ViewTable {
             }
         }
     }
+}
+
+/// The medium as a table, where it is one: one layer of `media` of `shaders/lib/medium.wgsl`.
+#[allow(clippy::cast_possible_truncation)]
+fn media(gpu: &Gpu, medium: &Medium, classes: &Classes) -> Texture {
+    let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
+    let size = [MEDIA_COLUMNS as u32, MEDIA_ROWS as u32];
+    let texture = Texture::new(&gpu.device, "view bake: medium", size, TextureFormat::Rgba32Float, usage);
+    if !classes.direct {
+        texture.write(&gpu.queue, 0, 0, bytemuck::cast_slice(&media_rows(medium, classes)));
+    }
+    texture
 }
