@@ -38,7 +38,7 @@ fn light_of(body: Body, star: vec4<f32>, view: SkyView) -> AirLight {
         all.radiance += air_to_rgb(air, k) * light.radiance;
         all.transmittance += air_to_rgb(air, k) * light.transmittance;
     }
-    return AirLight(max(all.radiance, vec3<f32>(0.0)), max(all.transmittance, vec3<f32>(0.0)));
+    return AirLight(max(all.radiance, vec3<f32>(0.0)), clamp(all.transmittance, vec3<f32>(0.0), vec3<f32>(1.0)));
 }
 
 @fragment
