@@ -84,6 +84,7 @@ fn mirrored_structs_have_the_layout_of_their_twins() {
                 bands
             }),
         ),
+        ("lib/phase.wgsl", "Phases", fields!(rust::PhasesUniform { g, x, y, z })),
         ("lib/medium.wgsl", "Airs", fields!(rust::AirsUniform { list })),
         ("lib/sky_pixel.wgsl", "Sky", fields!(rust::SkyUniform { ids, settings })),
         ("lib/sky_pixel.wgsl", "ProbeRay", fields!(ProbeRay { up, ray, sun })),

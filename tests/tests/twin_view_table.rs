@@ -111,7 +111,10 @@ fn the_difference_of_two_depths_keeps_its_digits() {
                 let r = medium.bottom_radius_m + h;
                 let there = (r * r + 2.0 * r * mu * distance + distance * distance).sqrt() - medium.bottom_radius_m;
                 // Only what lies above the ground on the way, too.
-                if there < 0.0 || there > medium.top_altitude_m || (mu < 0.0 && distance > -r * mu && r * (1.0 - mu * mu).sqrt() < medium.bottom_radius_m) {
+                if there < 0.0
+                    || there > medium.top_altitude_m
+                    || (mu < 0.0 && distance > -r * mu && r * (1.0 - mu * mu).sqrt() < medium.bottom_radius_m)
+                {
                     continue;
                 }
                 rays.push(probe_ray(h, f64::acos(mu), 0.6, 20.0, distance));
@@ -190,7 +193,8 @@ fn nothing_is_nan_wherever_one_stands() {
             }
         }
         for (ray, light) in rays.iter().zip(ask(&medium, &ViewTable { samples: 12, ..ViewTable::default() }, &rays)) {
-            let fine = light.radiance.iter().all(|x| x.is_finite() && *x >= 0.0) && light.transmittance.iter().all(|x| (0.0..=1.0).contains(x));
+            let fine =
+                light.radiance.iter().all(|x| x.is_finite() && *x >= 0.0) && light.transmittance.iter().all(|x| (0.0..=1.0).contains(x));
             assert!(fine, "{ray:?}: {light:?}");
         }
     }

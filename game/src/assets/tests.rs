@@ -62,7 +62,7 @@ ridged = 0.2
 seed = 7
 "#;
 
-const AIR: &str = r#"top_altitude_m = 80000.0
+pub(crate) const AIR: &str = r#"top_altitude_m = 80000.0
 ground_albedo = [0.1, 0.1, 0.1]
 [[layers]]
 scattering_per_m = [5.8e-6, 13.5e-6, 33.1e-6]
@@ -125,7 +125,7 @@ heading_deg = 90.0
 const TORCH: &str = include_str!("../../../assets/ships/torch.toml");
 
 /// A small, valid assets folder.
-fn assets() -> tempfile::TempDir {
+pub(crate) fn assets() -> tempfile::TempDir {
     let dir = tempfile::tempdir().unwrap();
     for (path, text) in [
         (SYSTEM_FILE, "name = \"T\"\nbodies = [\"moon\", \"rock\", \"sun\"]\n"),
@@ -141,7 +141,7 @@ fn assets() -> tempfile::TempDir {
     dir
 }
 
-fn put(root: &Path, path: &str, bytes: &[u8]) -> PathBuf {
+pub(crate) fn put(root: &Path, path: &str, bytes: &[u8]) -> PathBuf {
     let file = root.join(path);
     fs::create_dir_all(file.parent().unwrap()).unwrap();
     fs::write(&file, bytes).unwrap();
@@ -194,7 +194,7 @@ fn malformed(file: &str, from: &str, to: &str, line: usize, words: &[&str]) {
 const SUN_FILE: &str = "bodies/sun/body.toml";
 const ROCK_FILE: &str = "bodies/rock/body.toml";
 const SYSTEM_FILE: &str = "systems/t/system.toml";
-const AIR_FILE: &str = "bodies/rock/atmosphere.toml";
+pub(crate) const AIR_FILE: &str = "bodies/rock/atmosphere.toml";
 const MOON_FILE: &str = "bodies/moon/body.toml";
 const START_FILE: &str = "starts/here.toml";
 const SHIP_FILE: &str = "ships/torch.toml";

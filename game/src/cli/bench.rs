@@ -4,6 +4,29 @@ use super::Places;
 use clap::Args;
 use std::path::PathBuf;
 
+/// Arguments of `bench air`.
+#[derive(Clone, Debug, Args)]
+pub struct BenchAirArgs {
+    /// Judge the colours: ΔE2000 against all wavelengths
+    #[arg(long, required_unless_present = "elek")]
+    pub spectral: bool,
+    /// Fly Elek's test flight with the model `view_table`: five tests, a pitch from straight down to straight up
+    #[arg(long, conflicts_with = "spectral")]
+    pub elek: bool,
+    /// The flight at his sizes: pictures of 800×600 and 2560×2048, tables of 256³ and 128³, a frame for every second
+    #[arg(long, requires = "elek")]
+    pub full: bool,
+    /// Write the rows here instead of stdout
+    #[arg(long, value_name = "F.json")]
+    pub json: Option<PathBuf>,
+    /// Only the colours of these bodies, folders of assets/bodies; all where none is named
+    #[arg(long, value_name = "NAME", requires = "spectral")]
+    pub body: Vec<String>,
+    #[command(flatten)]
+    /// Folders.
+    pub places: Places,
+}
+
 /// Arguments of `bench orbit`.
 #[derive(Clone, Debug, Args)]
 pub struct BenchOrbitArgs {
@@ -67,29 +90,6 @@ pub struct BenchShipsArgs {
     /// The system, a folder of assets/systems
     #[arg(long, value_name = "NAME", default_value = "sol")]
     pub system: String,
-    #[command(flatten)]
-    /// Folders.
-    pub places: Places,
-}
-
-/// Arguments of `bench air`.
-#[derive(Clone, Debug, Args)]
-pub struct BenchAirArgs {
-    /// Fly Elek's test flight with the model `view_table`: five tests, a pitch from straight down to straight up
-    #[arg(long)]
-    pub elek: bool,
-    /// At his sizes: pictures of 800×600 and 2560×2048, tables of 256³ and 128³, a frame for every second
-    #[arg(long, requires = "elek")]
-    pub full: bool,
-    /// Judge the colours: ΔE2000 of each air against all wavelengths, drawn in three channels and in six bands
-    #[arg(long, conflicts_with = "elek")]
-    pub spectral: bool,
-    /// Only these bodies, folders of assets/bodies; all where none is named
-    #[arg(long, value_name = "NAME", requires = "spectral")]
-    pub body: Vec<String>,
-    /// Write the rows here instead of stdout
-    #[arg(long, value_name = "F.json")]
-    pub json: Option<PathBuf>,
     #[command(flatten)]
     /// Folders.
     pub places: Places,

@@ -14,8 +14,8 @@
 //!
 //! Not here: the bakes and the drawing (`shaders/lib/view_table.wgsl`, `render/pass/sky/view_table.rs`); [`Spacing`] is `view_space.rs`.
 
-use super::super::medium::classes::{Class, Classes};
 use super::super::medium::Medium;
+use super::super::medium::classes::{Class, Classes};
 use super::super::{RangeError, reference};
 use super::view_space::{Spacing, Trapezoid};
 use crate::light::occlusion::visible_between;

@@ -261,8 +261,21 @@ impl Chords {
             if self.node(&way.row, middle).0[channel] <= wanted { low = middle } else { high = middle }
         }
         let ((f0, s0), (f1, s1)) = (self.node(&way.row, low), self.node(&way.row, high));
-        let slope = ((f1 - f0) / (s1 - s0).max(1e-9)).max(DVec3::ZERO);
         let part = ((wanted - f0[channel]) / (f1[channel] - f0[channel]).max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+        Self::within(way, ((f0, s0), (f1, s1)), part, inward)
+    }
+
+    /// Where a way has gone through a distance.
+    pub fn stop_at(&self, way: &Way, distance_m: f64) -> Stop {
+        let s = way.at + distance_m;
+        let low = self.cell((way.row.b2 + s * s).sqrt());
+        let ((f0, s0), (f1, s1)) = (self.node(&way.row, low), self.node(&way.row, low + 1));
+        let part = ((s.abs() - s0) / (s1 - s0).max(1e-9)).clamp(0.0, 1.0);
+        Self::within(way, ((f0, s0), (f1, s1)), part, s < 0.0)
+    }
+
+    fn within(way: &Way, ((f0, s0), (f1, s1)): ((DVec3, f64), (DVec3, f64)), part: f64, inward: bool) -> Stop {
+        let slope = ((f1 - f0) / (s1 - s0).max(1e-9)).max(DVec3::ZERO);
         let (f, s) = (f0 + (f1 - f0) * part, s0 + (s1 - s0) * part);
         let gone = if inward {
             way.start - f

@@ -100,6 +100,12 @@ impl Starts {
         self.ends = self.share.iter().map(end).collect();
     }
 
+    /// A typical place where walks begin, m from the centre.
+    pub fn middle(&self) -> DVec3 {
+        let at = self.ends.partition_point(|end| *end < 0.5);
+        self.pieces.get(at).map_or(self.from_m, |p| self.from_m + self.direction * (0.5 * (p.from + p.to)))
+    }
+
     /// Draws a beginning from a uniform number.
     pub fn draw(&self, space: &Space, u: f64) -> Start {
         let i = self.ends.partition_point(|end| *end <= u).min(self.pieces.len().saturating_sub(1));

@@ -25,7 +25,7 @@ use glam::DVec3;
 use random::{Draw, Random, Sequence};
 use rayon::prelude::*;
 use space::{Light, Space, exp3, ground_under};
-use walk::Walk;
+use walk::{Glow, Walk};
 
 pub use single::{optical_depth, transmittance_to_top};
 pub use space::{Span, Sphere, span};
@@ -138,14 +138,15 @@ struct Batch {
 fn batch(space: &Space, light: &Light<'_>, direction: DVec3, starts: &Starts, key: [u64; 4]) -> Batch {
     let mut out = Batch { mean: DVec3::ZERO, squares: [DVec3::ZERO; STRATA] };
     let sequence = Sequence::new(&mut Random::new(&key));
+    let glow = Glow::of(light, starts.middle());
     for i in 0..BATCH {
         let mut draw = Draw::new(sequence.point(i), Random::new(&[key[0], key[1], key[2], key[3], u64::from(i)]));
         let start = starts.draw(space, draw.next());
         let mut sum = DVec3::ZERO;
         let hero = [0, 1, 2][i as usize % 3];
         let mut walk = Walk { at: start.at, direction, weight: start.weight, density: DVec3::ONE, hero };
-        walk.scatter(space, &mut draw);
-        walk.run(space, light, &mut draw, &mut |_, radiance| sum += radiance);
+        walk.scatter(space, glow.as_ref(), &mut draw);
+        walk.run(space, light, glow.as_ref(), &mut draw, &mut |_, radiance| sum += radiance);
         out.mean += sum / f64::from(BATCH);
         out.squares[start.stratum] += sum * sum;
     }

@@ -220,7 +220,7 @@ fn check_assets_takes_a_body_and_a_mod() {
         let Some(Mode::CheckAssets(args)) = Cli::parse_from(words).mode else { panic!("other words") };
         crate::mode::check_assets::run(&args)
     };
-    assert!(check(&root().join("bodies/moon")).unwrap().contains("moon"));
+    assert!(check(&root().join("bodies/moon")).unwrap().line.contains("body moon, listed by sol"));
     let broken = tempfile::tempdir().unwrap();
     std::fs::create_dir_all(broken.path().join("bodies/moon")).unwrap();
     std::fs::write(broken.path().join("bodies/moon/body.patch.toml"), "radius_km = -5\n").unwrap();

@@ -1,8 +1,8 @@
 //! The formulas of `view_table` against closed forms and the f64 integrator.
 
 use super::*;
-use crate::air::Profile;
 use crate::air::medium::tests::earth;
+use crate::air::{Layer, Phase, Profile};
 use crate::units::DEG;
 use glam::Vec3;
 

@@ -229,7 +229,10 @@ impl Sky {
             let Some((id, air)) = air_of(f.scene, choice) else { continue };
             let Some(painter) = self.painters.get(painter_of(&air.model)) else { continue };
             let Some(body) = f.scene.bodies.get(choice.body as usize) else { continue };
-            uniform.write(&f.gpu.queue, &SkyUniform { ids: [choice.body, self.steps, 0, 0], settings: painter.settings_in(f.scene, body, air) });
+            uniform.write(
+                &f.gpu.queue,
+                &SkyUniform { ids: [choice.body, self.steps, 0, 0], settings: painter.settings_in(f.scene, body, air) },
+            );
             let targets = f.targets;
             let (current, other) = if self.in_aerial { (&targets.aerial, &targets.opaque) } else { (&targets.opaque, &targets.aerial) };
             let (from, into) = if choice.rect == whole {

@@ -40,9 +40,8 @@ pub fn make(parts: &Parts<'_>) -> Result<Box<dyn Painter>, RenderError> {
     let depth = [uniform_entry(0), uniform_entry(1), storage(2, TextureFormat::Rgba32Float, flat), loaded_entry(4, array)];
     let scatter =
         [uniform_entry(0), uniform_entry(1), storage(2, HDR, TextureViewDimension::D3), loaded_entry(3, flat), loaded_entry(4, array)];
-    let layouts = [&depth[..], &scatter[..]].map(|entries| {
-        gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("view bake"), entries })
-    });
+    let layouts = [&depth[..], &scatter[..]]
+        .map(|entries| gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("view bake"), entries }));
     let bake = |layout: &wgpu::BindGroupLayout, file: &str| -> Result<_, RenderError> {
         Ok(compute_pipeline(gpu, file, &shaders.load(&gpu.device, file)?, &[layout], "bake"))
     };
@@ -84,11 +83,7 @@ impl Tables {
             .device
             .create_texture(&wgpu::TextureDescriptor {
                 label: Some("view table: scattering"),
-                size: wgpu::Extent3d {
-                    width: settings.view_size,
-                    height: settings.sun_size,
-                    depth_or_array_layers: settings.height_size,
-                },
+                size: wgpu::Extent3d { width: settings.view_size, height: settings.sun_size, depth_or_array_layers: settings.height_size },
                 mip_level_count: 1,
                 sample_count: 1,
                 dimension: wgpu::TextureDimension::D3,

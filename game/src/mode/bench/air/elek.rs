@@ -5,11 +5,11 @@
 //! his aerosol scatters: here 4e-6 m⁻¹. The shell has no vertices: air is found for every pixel. Unless the full sizes are asked for,
 //! pictures are a quarter as wide and high and tables a quarter as long each way, so that a software device is done in a minute.
 
-use super::orbit_rows;
 use crate::cli::BenchAirArgs;
+use crate::mode::Error;
+use crate::mode::bench::orbit_rows;
 use crate::mode::shot::ShotError;
 use crate::mode::studio::StudioError;
-use crate::mode::Error;
 use engine::air::model::ViewTable;
 use engine::air::optics::{Amount, Gas, Refraction};
 use engine::air::{Air, Layer, Medium, Model, Phase, Profile};
@@ -219,7 +219,11 @@ fn mesh(relief: &Arc<Relief>, vertices: usize) -> TileSet {
         let middle = 0.5 * (low + high);
         let set = with(libm::exp(middle));
         let miss = |s: &TileSet| (s.tiles.len() * TILE_VERTICES).abs_diff(vertices);
-        if set.tiles.len() * TILE_VERTICES > vertices { low = middle } else { high = middle }
+        if set.tiles.len() * TILE_VERTICES > vertices {
+            low = middle
+        } else {
+            high = middle
+        }
         if miss(&set) < miss(&best) {
             best = set;
         }
