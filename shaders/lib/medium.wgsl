@@ -29,6 +29,7 @@ struct Air {
     jumps_low: vec4<f32>,       // altitudes where density jumps; −1e9: none
     jumps_high: vec4<f32>,
     orders: vec4<f32>,          // how the sun's height is mapped in the table of further orders: SunMap of engine/src/air/model/orders.rs, 0
+    bands: array<vec4<f32>, 6>, // columns of the matrices to linear sRGB of the two media that draw it; w of a first: that medium's slot; w of [1]: how many of the two
 }
 
 struct Airs {
@@ -39,6 +40,11 @@ struct Airs {
 struct AirMatter {
     scattering: mat4x3<f32>,  // a column per class
     extinction: vec3<f32>,
+}
+
+// From the channels of the k-th of the media that draw the air to linear sRGB. One that is not drawn in bands is the first itself.
+fn air_to_rgb(air: Air, k: u32) -> mat3x3<f32> {
+    return mat3x3<f32>(air.bands[3u * k].xyz, air.bands[3u * k + 1u].xyz, air.bands[3u * k + 2u].xyz);
 }
 
 // Relative density of each class of an analytic medium.

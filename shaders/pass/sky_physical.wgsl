@@ -27,6 +27,20 @@ fn vertex(@builtin(vertex_index) index: u32) -> Varying {
     return Varying(full_screen_position(uv), uv);
 }
 
+// By the air's own medium, or by its two band media.
+fn light_of(body: Body, star: vec4<f32>, view: SkyView) -> AirLight {
+    let air = airs.list[u32(body.ids.z)];
+    var all = AirLight(vec3<f32>(0.0), vec3<f32>(0.0));
+    for (var k = 0u; k < u32(air.bands[1].w); k++) {
+        var by = body;
+        by.ids.z = i32(air.bands[3u * k].w);
+        let light = physical_light(by, airs.list[u32(by.ids.z)], media, transmittance, orders, linear, star, sky, view);
+        all.radiance += air_to_rgb(air, k) * light.radiance;
+        all.transmittance += air_to_rgb(air, k) * light.transmittance;
+    }
+    return AirLight(max(all.radiance, vec3<f32>(0.0)), clamp(all.transmittance, vec3<f32>(0.0), vec3<f32>(1.0)));
+}
+
 @fragment
 fn fragment(in: Varying) -> @location(0) vec4<f32> {
     let pixel = vec2<u32>(in.position.xy);
@@ -36,7 +50,7 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
     let rays = sky_rays(body, air, view);
     var sum = AirLight(vec3<f32>(0.0), vec3<f32>(0.0));
     for (var k = 0u; k < rays; k++) {
-        let light = physical_light(body, air, media, transmittance, orders, linear, frame.star, sky, sky_across(body, view, k, rays));
+        let light = light_of(body, frame.star, sky_across(body, view, k, rays));
         sum.radiance += light.radiance;
         sum.transmittance += light.transmittance;
     }
@@ -52,6 +66,6 @@ fn probe(@builtin(global_invocation_id) id: vec3<u32>) {
     let body = sky_probe_body(bodies.list[sky.ids.x], asked);
     let star = vec4<f32>(frame.star.xyz + body.centre.xyz, frame.star.w);
     // By the body's slot, not by a constant: Mesa 22's software driver faults on branches that hang on constant places of a uniform.
-    let light = physical_light(body, airs.list[u32(body.ids.z)], media, transmittance, orders, linear, star, sky, sky_probe_view(asked));
+    let light = light_of(body, star, sky_probe_view(asked));
     found[id.x] = ProbeLight(vec4<f32>(light.radiance, 0.0), vec4<f32>(light.transmittance, 1.0));
 }

@@ -179,17 +179,15 @@ fn fit(medium: &SpectralMedium, star: &Spectrum, start: &[DVec3; N]) -> Option<[
     out.iter().all(|w| w.is_finite()).then_some(out)
 }
 
-/// Solves a symmetric positive system by Cholesky's elimination; `None` where it is not.
+/// Solves a symmetric positive system by elimination; `None` where it is not.
 fn solve<const F: usize>(mut a: [[f64; F]; F], mut b: [DVec3; F]) -> Option<[DVec3; F]> {
     for i in 0..F {
         if a[i][i].is_nan() || a[i][i] <= 0.0 {
             return None;
         }
         for j in i + 1..F {
-            let factor = a[j][i] / a[i][i];
-            for k in i..F {
-                a[j][k] -= factor * a[i][k];
-            }
+            let (factor, above) = (a[j][i] / a[i][i], a[i]);
+            a[j].iter_mut().zip(above).for_each(|(x, above)| *x -= factor * above);
             let above = b[i];
             b[j] -= above * factor;
         }
