@@ -146,7 +146,19 @@ fn limb_gathered(
     let shadow = LimbShadow(
         limb_hidden(path, air.shape.x, mu_s, nu), limb_hidden(path, air.shape.x, mu_s, sides.x),
         limb_hidden(path, air.shape.x, mu_s, sides.y), side, 1.0 - h * h);
-    return scale.rgb * limb_column(air, path, end, scale.w, shadow, sky.ids.y, false);
+    return scale.rgb * limb_column(air, path, end, scale.w, shadow, 2u * sky.ids.y, false);
+}
+
+// By all lights; `lit` is the free fraction of the star.
+fn limb_lights(
+    body: Body, air: Air, table: texture_2d<f32>, linear: sampler, sky: Sky, path: AirPath, ray: vec3<f32>, end: f32, lit: f32,
+) -> vec3<f32> {
+    var sum = limb_gathered(air, table, linear, sky, path, ray, end, body.sun.xyz) * lit;
+    let further = min(u32(sky.settings[1].y), LIMB_LIGHTS);
+    for (var i = 0u; i < further; i++) {
+        sum += sky.settings[3u + 2u * i].rgb * limb_gathered(air, table, linear, sky, path, ray, end, sky.settings[2u + 2u * i].xyz);
+    }
+    return sum;
 }
 
 fn limb_table_light(
@@ -157,10 +169,13 @@ fn limb_table_light(
     if end <= 0.0 {
         return AirLight(vec3<f32>(0.0), vec3<f32>(1.0));
     }
-    var sum = limb_gathered(air, table, linear, sky, path, view.ray, end, body.sun.xyz) * eclipse_along(body, star, air, path, view.ray, end);
-    let further = min(u32(sky.settings[1].y), LIMB_LIGHTS);
-    for (var i = 0u; i < further; i++) {
-        sum += sky.settings[3u + 2u * i].rgb * limb_gathered(air, table, linear, sky, path, view.ray, end, sky.settings[2u + 2u * i].xyz);
+    let lit = eclipse_along(body, star, air, path, view.ray, end);
+    var sum = limb_lights(body, air, table, linear, sky, path, view.ray, end, lit);
+    let beyond = edge_share(air, path, view, end);
+    if beyond > 0.0 {
+        var behind = path;
+        behind.ground = -1.0;
+        sum = mix(sum, limb_lights(body, air, table, linear, sky, behind, view.ray, path.exit, lit), beyond);
     }
     return AirLight(sum, vec3<f32>(1.0));
 }

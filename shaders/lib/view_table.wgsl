@@ -16,6 +16,7 @@ struct ViewTable {
     tint: vec4<f32>,         // rgb: colour of what is in alpha over its mean; w: 1 where it is reddened as RGB is
     inverse: vec4<f32>,      // rgb: 1 / vertical scattering depth of RGB, 0 where that is 0
     counts: vec4<u32>,       // trapezoids of a ray, of a depth; directions of the ambient integral each way; 1: graded
+    ids: vec4<i32>,          // id of the body; −1: of none
 }
 
 // What light meets at a height: scattering of RGB, of alpha (mean of the channels); extinction. Per m.
@@ -24,10 +25,9 @@ struct ViewMatter {
     alpha: f32,
     extinction: vec3<f32>,
 }
-fn view_matter(air: Air, vt: ViewTable, altitude: f32) -> ViewMatter {
-    let density = air_density(air, max(altitude, 0.0));
-    let alpha = air.scattering * (density * vt.alpha);
-    return ViewMatter(air.scattering * (density * vt.rgb), dot(alpha, vec3<f32>(1.0 / 3.0)), air.extinction * density);
+fn view_matter(air: Air, media: texture_2d_array<f32>, slot: i32, vt: ViewTable, altitude: f32) -> ViewMatter {
+    let matter = air_matter(air, media, slot, max(altitude, 0.0));
+    return ViewMatter(matter.scattering * vt.rgb, dot(matter.scattering * vt.alpha, vec3<f32>(1.0 / 3.0)), matter.extinction);
 }
 
 // Optical depth from a height to the top at cosine `mu`.
@@ -81,18 +81,33 @@ fn view_colour(vt: ViewTable, entry: vec4<f32>, phases: vec2<f32>) -> vec3<f32> 
     return entry.rgb * phases.x + colour * (entry.a * phases.y);
 }
 
+// Luminance over illuminance that water on the datum mirrors to the eye: the table seen from the ground along the reflected ray. `view`
+// goes to the eye; all unit, with the zenith in one frame. [Elek 2008, §3.5]; by how much of it the water answers is the caller's.
+fn view_mirrored(
+    air: Air, media: texture_2d_array<f32>, slot: i32, vt: ViewTable, scatter: texture_3d<f32>, linear: sampler,
+    up: vec3<f32>, view: vec3<f32>, sun: vec3<f32>,
+) -> vec3<f32> {
+    let ray = 2.0 * dot(view, up) * up - view;
+    let values = air_phase(air, media, slot, dot(ray, sun));
+    let entry = view_entry(air, vt, scatter, linear, 0.0, max(dot(ray, up), 0.0), false, dot(sun, up));
+    return view_colour(vt, entry, vec2<f32>(dot(values, vt.rgb_phase), dot(values, vt.alpha_phase)));
+}
+
 // Over a short way: what is gathered and the depth of it, by the air itself. Differences of two table entries would be mostly error.
 struct ViewStretch {
     light: vec4<f32>,
     depth: vec3<f32>,
 }
-fn view_near(air: Air, vt: ViewTable, depth: texture_2d<f32>, path: AirPath, end: f32, mu_s: f32, nu: f32, sun_rad: f32) -> ViewStretch {
+fn view_near(
+    air: Air, media: texture_2d_array<f32>, slot: i32, vt: ViewTable, depth: texture_2d<f32>, path: AirPath, end: f32, mu_s: f32, nu: f32,
+    sun_rad: f32,
+) -> ViewStretch {
     var out = ViewStretch(vec4<f32>(0.0), vec3<f32>(0.0));
     let ds = end / 3.0;
     for (var i = 0u; i < 3u; i++) {
         let s = (f32(i) + 0.5) * ds;
         let altitude = air_altitude(air, path, s);
-        let matter = view_matter(air, vt, altitude);
+        let matter = view_matter(air, media, slot, vt, altitude);
         let sun = view_sun(air, vt, depth, altitude, (path.radius * mu_s + s * nu) / (air.shape.x + altitude));
         let step = matter.extinction * ds;
         let kept = sun.transmittance * exp(-out.depth - 0.5 * step) * (ds * visible_above_limb(sun_rad, sun.elevation));
@@ -117,7 +132,7 @@ fn view_depth_between(air: Air, vt: ViewTable, depth: texture_2d<f32>, path: Air
 const VIEW_NEAR: vec2<f32> = vec2<f32>(0.01, 0.04);
 
 fn view_table_light(
-    body: Body, air: Air, vt: ViewTable, scatter: texture_3d<f32>, depth: texture_2d<f32>, linear: sampler,
+    body: Body, air: Air, media: texture_2d_array<f32>, vt: ViewTable, scatter: texture_3d<f32>, depth: texture_2d<f32>, linear: sampler,
     star: vec4<f32>, view: SkyView,
 ) -> AirLight {
     let path = graded_above(air, air_path(air, body.up.xyz, body.up.w, view.ray), view.datum);
@@ -130,7 +145,8 @@ fn view_table_light(
     let nu = dot(view.ray, body.sun.xyz);
     let ground = path.ground >= 0.0;
     let whole = select(path.exit, path.ground, ground);
-    let values = air_phase(air, nu);
+    let slot = body.ids.z;
+    let values = air_phase(air, media, slot, nu);
     let phases = vec2<f32>(dot(values, vt.rgb_phase), dot(values, vt.alpha_phase));
 
     var light = vec4<f32>(0.0);
@@ -155,9 +171,13 @@ fn view_table_light(
         }
     }
     if far < 1.0 {
-        let near = view_near(air, vt, depth, path, end, mu_s, nu, body.sun.w);
+        let near = view_near(air, media, slot, vt, depth, path, end, mu_s, nu, body.sun.w);
         light = mix(near.light, light, far);
         between = mix(near.depth, between, far);
+    }
+    let beyond = edge_share(air, path, view, end);
+    if beyond > 0.0 {
+        light = mix(light, view_entry(air, vt, scatter, linear, path.altitude, mu, false, mu_s), beyond);
     }
     let lit = eclipse_along(body, star, air, path, view.ray, end);
     return AirLight(view_colour(vt, light, phases) * lit, exp(-between));

@@ -7,6 +7,7 @@
 @group(0) @binding(2) var<uniform> exposure: Exposure;
 @group(1) @binding(0) var<uniform> airs: Airs;
 @group(1) @binding(4) var linear: sampler;
+@group(1) @binding(8) var media: texture_2d_array<f32>;
 @group(2) @binding(0) var opaque: texture_2d<f32>;
 @group(2) @binding(1) var depth: texture_depth_2d;
 @group(2) @binding(2) var<uniform> sky: Sky;
@@ -36,7 +37,7 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
     let rays = sky_rays(body, air, view);
     var sum = AirLight(vec3<f32>(0.0), vec3<f32>(0.0));
     for (var k = 0u; k < rays; k++) {
-        let light = view_table_light(body, air, vt, scatter, depths, linear, frame.star, sky_across(body, view, k, rays));
+        let light = view_table_light(body, air, media, vt, scatter, depths, linear, frame.star, sky_across(body, view, k, rays));
         sum.radiance += light.radiance;
         sum.transmittance += light.transmittance;
     }
@@ -51,6 +52,6 @@ fn probe(@builtin(global_invocation_id) id: vec3<u32>) {
     let asked = given[id.x];
     let body = sky_probe_body(bodies.list[sky.ids.x], asked);
     let star = vec4<f32>(frame.star.xyz + body.centre.xyz, frame.star.w);
-    let light = view_table_light(body, airs.list[u32(body.ids.z)], vt, scatter, depths, linear, star, sky_probe_view(asked));
+    let light = view_table_light(body, airs.list[u32(body.ids.z)], media, vt, scatter, depths, linear, star, sky_probe_view(asked));
     found[id.x] = ProbeLight(vec4<f32>(light.radiance, 0.0), vec4<f32>(light.transmittance, 1.0));
 }

@@ -5,6 +5,7 @@
 
 @group(0) @binding(0) var<uniform> air: Air;
 @group(0) @binding(1) var<uniform> vt: ViewTable;
+@group(0) @binding(4) var media: texture_2d_array<f32>;
 @group(0) @binding(2) var table: texture_storage_2d<rgba32float, write>;
 
 @compute @workgroup_size(8, 8)
@@ -24,10 +25,10 @@ fn bake(@builtin(global_invocation_id) id: vec3<u32>) {
     let steps = graded_steps(path, end);
     var sum = vec3<f32>(0.0);
     var from_s = 0.0;
-    var from_extinction = view_matter(air, vt, path.altitude).extinction;
+    var from_extinction = view_matter(air, media, 0, vt, path.altitude).extinction;
     for (var i = 1u; i <= vt.counts.y; i++) {
         let to_s = space_step(steps, graded, f32(i) / f32(vt.counts.y), end);
-        let to_extinction = view_matter(air, vt, air_altitude(air, path, to_s)).extinction;
+        let to_extinction = view_matter(air, media, 0, vt, air_altitude(air, path, to_s)).extinction;
         sum += (from_extinction + to_extinction) * (0.5 * (to_s - from_s));
         from_s = to_s;
         from_extinction = to_extinction;

@@ -5,6 +5,7 @@
 
 @group(0) @binding(0) var<uniform> air: Air;
 @group(0) @binding(1) var<uniform> vt: ViewTable;
+@group(0) @binding(4) var media: texture_2d_array<f32>;
 @group(0) @binding(2) var table: texture_storage_3d<rgba16float, write>;
 @group(0) @binding(3) var depth: texture_2d<f32>;
 
@@ -36,12 +37,12 @@ fn bake(@builtin(global_invocation_id) id: vec3<u32>) {
     var out = vec4<f32>(0.0);
     var through = vec3<f32>(0.0);
     var from_s = 0.0;
-    var from_matter = view_matter(air, vt, path.altitude);
+    var from_matter = view_matter(air, media, 0, vt, path.altitude);
     var from_sun = view_sun(air, vt, depth, path.altitude, mu_s);
     for (var i = 1u; i <= vt.counts.x; i++) {
         let to_s = space_step(steps, graded, f32(i) / f32(vt.counts.x), end);
         let altitude = air_altitude(air, path, to_s);
-        let matter = view_matter(air, vt, altitude);
+        let matter = view_matter(air, media, 0, vt, altitude);
         let sun = view_sun(air, vt, depth, altitude, (path.radius * mu_s + to_s * nu) / (air.shape.x + max(altitude, 0.0)));
         let ds = to_s - from_s;
         let from_kept = from_sun.transmittance * exp(-through);

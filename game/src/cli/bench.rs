@@ -8,13 +8,19 @@ use std::path::PathBuf;
 #[derive(Clone, Debug, Args)]
 pub struct BenchAirArgs {
     /// Judge the colours: ΔE2000 against all wavelengths
-    #[arg(long, required = true)]
+    #[arg(long, required_unless_present = "elek")]
     pub spectral: bool,
+    /// Fly Elek's test flight with the model `view_table`: five tests, a pitch from straight down to straight up
+    #[arg(long, conflicts_with = "spectral")]
+    pub elek: bool,
+    /// The flight at his sizes: pictures of 800×600 and 2560×2048, tables of 256³ and 128³, a frame for every second
+    #[arg(long, requires = "elek")]
+    pub full: bool,
     /// Write the rows here instead of stdout
     #[arg(long, value_name = "F.json")]
     pub json: Option<PathBuf>,
-    /// Only these bodies, folders of assets/bodies; all where none is named
-    #[arg(long, value_name = "NAME")]
+    /// Only the colours of these bodies, folders of assets/bodies; all where none is named
+    #[arg(long, value_name = "NAME", requires = "spectral")]
     pub body: Vec<String>,
     #[command(flatten)]
     /// Folders.

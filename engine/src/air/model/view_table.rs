@@ -7,14 +7,15 @@
 //! where the ray enters. Azimuth is in the phase function only: the twilight is the same all around. Further orders are left out
 //! (his phase function for air, `elek_rayleigh`, makes up for some).
 //!
-//! Which layer goes where: those that share a phase function stand together; of these groups the one whose vertical optical depth
-//! differs most between channels is in RGB, all others in alpha ([`Split`]). Alpha holds the mean of the channels, dimmed as green is;
+//! Which class of the medium goes where: those that share a phase function stand together; of these groups the one whose vertical optical
+//! depth differs most between channels is in RGB, all others in alpha ([`Split`]). Alpha holds the mean of the channels, dimmed as green is;
 //! it gets its colour back from the RGB beside it [Bruneton & Neyret 2008, "Precomputed Atmospheric Scattering", §4], or stays grey as in
 //! the thesis ([`AlphaColour`]).
 //!
 //! Not here: the bakes and the drawing (`shaders/lib/view_table.wgsl`, `render/pass/sky/view_table.rs`); [`Spacing`] is `view_space.rs`.
 
-use super::super::medium::{Layer, Medium, Phase};
+use super::super::medium::Medium;
+use super::super::medium::classes::{Class, Classes};
 use super::super::{RangeError, reference};
 use super::view_space::{Spacing, Trapezoid};
 use crate::light::occlusion::visible_between;
@@ -79,41 +80,44 @@ impl Default for ViewTable {
     }
 }
 
-/// Which of a medium's layers are in RGB, and what is in alpha.
+/// Which of a medium's classes are in RGB, and what is in alpha.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Split {
-    /// For each layer, whether it is in RGB; its phase functions are all the same.
+    /// The classes; those of the GPU.
+    pub classes: Vec<Class>,
+    /// For each class, whether it is in RGB; all that are scatter into the same directions.
     pub in_rgb: Vec<bool>,
     /// Vertical scattering optical depth of RGB per channel.
     pub rgb_depth: DVec3,
     /// Vertical scattering optical depth of alpha per channel.
     pub alpha_depth: DVec3,
-    /// Weight of each layer's phase function in alpha, by vertical optical depth; their sum is 1 or, with nothing in alpha, 0.
+    /// Weight of each class's phase function in alpha, by vertical optical depth; their sum is 1 or, with nothing in alpha, 0.
     pub alpha_weights: Vec<f64>,
 }
 
 impl Split {
-    /// Of layers in an air up to `top_m`.
-    pub fn new(layers: &[Layer], top_m: f64) -> Self {
-        let depths: Vec<DVec3> = layers.iter().map(|l| l.scattering_per_m.as_dvec3() * vertical_column_m(l, top_m)).collect();
-        let group = |phase: &Phase| layers.iter().zip(&depths).filter(|(l, _)| l.phase == *phase).map(|(_, d)| *d).sum::<DVec3>();
-        // Difference between channels decides, then depth, then order in the file.
-        let mut chosen: Option<(&Phase, DVec3)> = None;
-        for layer in layers {
-            let d = group(&layer.phase);
+    /// Of a medium.
+    pub fn new(medium: &Medium) -> Self {
+        let classes = Classes::of(medium).list;
+        let depths: Vec<DVec3> = classes.iter().map(|c| vertical_depth(medium, c)).collect();
+        let alike = |of: &Class| classes.iter().zip(&depths).filter(|(c, _)| c.phases == of.phases).map(|(_, d)| *d).sum::<DVec3>();
+        // Difference between channels decides, then depth, then order.
+        let mut chosen: Option<(&Class, DVec3)> = None;
+        for class in &classes {
+            let d = alike(class);
             let key = |d: DVec3| (d.max_element() - d.min_element(), d.max_element());
             if d.max_element() > 0.0 && chosen.is_none_or(|(_, best)| key(d) > key(best)) {
-                chosen = Some((&layer.phase, d));
+                chosen = Some((class, d));
             }
         }
-        let in_rgb: Vec<bool> = layers.iter().map(|l| chosen.is_some_and(|(phase, _)| l.phase == *phase)).collect();
+        let in_rgb: Vec<bool> = classes.iter().map(|c| chosen.is_some_and(|(best, _)| c.phases == best.phases)).collect();
         let rgb_depth = chosen.map_or(DVec3::ZERO, |(_, d)| d);
         let in_alpha = |i: usize| !in_rgb.get(i).copied().unwrap_or(false);
         let alpha_depth = depths.iter().enumerate().filter(|(i, _)| in_alpha(*i)).map(|(_, d)| *d).sum::<DVec3>();
         let all = mean(alpha_depth);
         let weight = |(i, d): (usize, &DVec3)| if in_alpha(i) && all > 0.0 { mean(*d) / all } else { 0.0 };
         let alpha_weights = depths.iter().enumerate().map(weight).collect();
-        Self { in_rgb, rgb_depth, alpha_depth, alpha_weights }
+        Self { classes, in_rgb, rgb_depth, alpha_depth, alpha_weights }
     }
 
     /// Colour of what is in alpha: its scattering over the mean of its channels; 1 where there is none.
@@ -123,17 +127,17 @@ impl Split {
     }
 
     /// Phase functions of RGB and of alpha, sr⁻¹.
-    pub fn phases(&self, layers: &[Layer], cos_theta: f64) -> (f64, f64) {
-        let rgb = layers.iter().zip(&self.in_rgb).find(|(_, r)| **r).map_or(0.0, |(l, _)| l.phase.value(cos_theta));
-        (rgb, layers.iter().zip(&self.alpha_weights).map(|(l, w)| l.phase.value(cos_theta) * w).sum())
+    pub fn phases(&self, cos_theta: f64) -> (f64, f64) {
+        let rgb = self.classes.iter().zip(&self.in_rgb).find(|(_, r)| **r).map_or(0.0, |(c, _)| c.value(cos_theta));
+        (rgb, self.classes.iter().zip(&self.alpha_weights).map(|(c, w)| c.value(cos_theta) * w).sum())
     }
 }
 
-/// Integral of a layer's density from the datum to the top, m.
-fn vertical_column_m(layer: &Layer, top_m: f64) -> f64 {
+/// Scattering optical depth of a class from the datum to the top, per channel.
+fn vertical_depth(medium: &Medium, class: &Class) -> DVec3 {
     let n = 2000;
-    let dh = top_m / f64::from(n);
-    (0..n).map(|i| layer.profile.density((f64::from(i) + 0.5) * dh)).sum::<f64>() * dh
+    let dh = medium.top_altitude_m / f64::from(n);
+    (0..n).map(|i| class.scattering(medium, (f64::from(i) + 0.5) * dh)).sum::<DVec3>() * dh
 }
 
 fn mean(v: DVec3) -> f64 {
@@ -194,30 +198,19 @@ impl ViewTable {
         e
     }
 
-    /// Columns of each layer from height `h_m` along a ray at cosine `mu` to the top of the air, m of density 1: [eq. 3.3] without its
-    /// coefficients. A ray that would meet the ground goes on through air of the ground's density, so that entries beside the
-    /// horizon are continuous.
-    pub fn columns_m(&self, medium: &Medium, h_m: f64, mu: f64) -> Vec<f64> {
+    /// Optical depth from height `h_m` along a ray at cosine `mu` to the top of the air, per channel [eq. 3.3]. A ray that would meet the
+    /// ground goes on through air of the ground's density, so that entries beside the horizon are continuous.
+    pub fn depth(&self, medium: &Medium, h_m: f64, mu: f64) -> DVec3 {
         let (r, top) = (medium.bottom_radius_m + h_m, medium.bottom_radius_m + medium.top_altitude_m);
         let end = (-r * mu + (r * r * (mu * mu - 1.0) + top * top).max(0.0).sqrt()).max(0.0);
-        let nodes = Trapezoid::new(self.spacing, self.depth_samples, -r * mu, end);
-        let densities = |s: f64| -> Vec<f64> {
-            let h = along(medium, h_m, mu, s).max(0.0);
-            medium.layers.iter().map(|l| l.profile.density(h)).collect()
-        };
-        let mut sums = vec![0.0; medium.layers.len()];
-        let mut from = densities(0.0);
-        for (a, b) in nodes.steps() {
-            let to = densities(b);
-            sums.iter_mut().zip(from.iter().zip(&to)).for_each(|(sum, (x, y))| *sum += 0.5 * (x + y) * (b - a));
+        let extinction = |s: f64| medium.extinction(along(medium, h_m, mu, s).max(0.0));
+        let (mut sum, mut from) = (DVec3::ZERO, extinction(0.0));
+        for (a, b) in Trapezoid::new(self.spacing, self.depth_samples, -r * mu, end).steps() {
+            let to = extinction(b);
+            sum += (from + to) * (0.5 * (b - a));
             from = to;
         }
-        sums
-    }
-
-    /// Optical depth of columns, per channel.
-    pub fn optical_depth(medium: &Medium, columns_m: &[f64]) -> DVec3 {
-        medium.layers.iter().zip(columns_m).map(|(l, c)| (l.scattering_per_m + l.absorption_per_m).as_dvec3() * *c).sum()
+        sum
     }
 
     /// Optical depth between two points of a ray, [eq. 3.9]: the difference of two depths to the top along the ray that goes up (backwards
@@ -225,8 +218,11 @@ impl ViewTable {
     pub fn depth_between(&self, medium: &Medium, h_m: f64, mu: f64, distance_m: f64) -> DVec3 {
         let there = along(medium, h_m, mu, distance_m);
         let mu_there = ((medium.bottom_radius_m + h_m) * mu + distance_m) / (medium.bottom_radius_m + there);
-        let depth = |h, mu| Self::optical_depth(medium, &self.columns_m(medium, h, mu));
-        if mu + mu_there < 0.0 { depth(there, -mu_there) - depth(h_m, -mu) } else { depth(h_m, mu) - depth(there, mu_there) }
+        if mu + mu_there < 0.0 {
+            self.depth(medium, there, -mu_there) - self.depth(medium, h_m, -mu)
+        } else {
+            self.depth(medium, h_m, mu) - self.depth(medium, there, mu_there)
+        }
     }
 
     /// [Eq. 3.4] without its phase function, in the plane of zenith, sun and ray, by the trapezoid rule.
@@ -243,20 +239,16 @@ impl ViewTable {
             let mu_s = (r * mu_s + s * nu) / (radius + h);
             let horizon = -(h * (2.0 * radius + h)).sqrt() / (radius + h);
             let elevation = libm::asin(mu_s.clamp(-1.0, 1.0)) - libm::asin(horizon);
-            let to_sun = Self::optical_depth(medium, &self.columns_m(medium, h, mu_s.max(horizon)));
-            let densities: Vec<f64> = medium.layers.iter().map(|l| l.profile.density(h)).collect();
-            (densities, exp3(-to_sun), elevation)
+            Point { h, sunlight: exp3(-self.depth(medium, h, mu_s.max(horizon))), elevation }
         };
-        let mut out = Entry::default();
-        let mut through = DVec3::ZERO;
+        let (mut out, mut through) = (Entry::default(), DVec3::ZERO);
         let mut last = point(0.0);
-        let mut last_light = self.source(medium, split, &last, through);
+        let mut last_light = source(medium, split, &last, through);
         for (a, b) in Trapezoid::new(self.spacing, self.samples, -r * mu, end).steps() {
             let next = point(b);
-            let columns: Vec<f64> = last.0.iter().zip(&next.0).map(|(x, y)| 0.5 * (x + y) * (b - a)).collect();
-            through += Self::optical_depth(medium, &columns);
-            let light = self.source(medium, split, &next, through);
-            let lit = 0.5 * (b - a) * visible_between(Self::SUN_RAD, last.2, next.2);
+            through += (medium.extinction(last.h) + medium.extinction(next.h)) * (0.5 * (b - a));
+            let light = source(medium, split, &next, through);
+            let lit = 0.5 * (b - a) * visible_between(Self::SUN_RAD, last.elevation, next.elevation);
             out.rgb += (last_light.rgb + light.rgb) * lit;
             out.alpha += (last_light.alpha + light.alpha) * lit;
             (last, last_light) = (next, light);
@@ -264,19 +256,9 @@ impl ViewTable {
         out
     }
 
-    fn source(&self, medium: &Medium, split: &Split, point: &(Vec<f64>, DVec3, f64), through: DVec3) -> Entry {
-        let mut out = Entry::default();
-        let kept = point.1 * exp3(-through);
-        for ((layer, density), in_rgb) in medium.layers.iter().zip(&point.0).zip(&split.in_rgb) {
-            let scattered = layer.scattering_per_m.as_dvec3() * *density;
-            if *in_rgb { out.rgb += scattered * kept } else { out.alpha += mean(scattered) * kept.y }
-        }
-        out
-    }
-
     /// Radiance of an entry under a scattering angle, per unit of the sun's illuminance, sr⁻¹.
-    pub fn radiance(&self, medium: &Medium, split: &Split, entry: Entry, cos_theta: f64) -> DVec3 {
-        let (rgb, alpha) = split.phases(&medium.layers, cos_theta);
+    pub fn radiance(&self, split: &Split, entry: Entry, cos_theta: f64) -> DVec3 {
+        let (rgb, alpha) = split.phases(cos_theta);
         let mut colour = split.alpha_tint();
         if self.alpha_colour == AlphaColour::Proportional {
             colour *= reddening(entry.rgb, split.rgb_depth);
@@ -288,10 +270,7 @@ impl ViewTable {
     /// integral over the half sphere (sin φ of the solid angle, which the printed equation leaves out, is in it).
     pub fn ambient(&self, medium: &Medium, split: &Split, delta: f64) -> DVec3 {
         let n = self.ambient_samples;
-        let (sin_delta, mu_s) = {
-            let (s, c) = libm::sincos(delta);
-            (s, c)
-        };
+        let (sin_delta, mu_s) = libm::sincos(delta);
         let mut sum = DVec3::ZERO;
         for i in 0..n {
             let phi = (f64::from(i) + 0.5) / f64::from(n) * 0.5 * PI;
@@ -300,11 +279,29 @@ impl ViewTable {
             for k in 0..n {
                 let omega = (f64::from(k) + 0.5) / f64::from(n) * PI;
                 let nu = mu * mu_s + sin_phi * sin_delta * libm::cos(omega);
-                sum += self.radiance(medium, split, entry, nu) * (mu * sin_phi);
+                sum += self.radiance(split, entry, nu) * (mu * sin_phi);
             }
         }
         sum * (2.0 * PI * 0.5 * PI / (f64::from(n) * f64::from(n)))
     }
+}
+
+/// A place on a ray: its height, m; transmittance towards the sun; elevation of the sun's centre above the horizon, rad.
+struct Point {
+    h: f64,
+    sunlight: DVec3,
+    elevation: f64,
+}
+
+/// Light scattered at a place, per m, dimmed on its way to the eye by the optical depth `through`.
+fn source(medium: &Medium, split: &Split, at: &Point, through: DVec3) -> Entry {
+    let kept = at.sunlight * exp3(-through);
+    let mut out = Entry::default();
+    for (class, in_rgb) in split.classes.iter().zip(&split.in_rgb) {
+        let scattered = class.scattering(medium, at.h);
+        if *in_rgb { out.rgb += scattered * kept } else { out.alpha += mean(scattered) * kept.y }
+    }
+    out
 }
 
 /// How a ray's light was reddened, over green: light over scattering depth; 1 for channels that say nothing.

@@ -3,7 +3,7 @@
 //! Each bench prints its rows as JSON on stdout (or into `--json`), one object a run, so that tools compare them with others'.
 //! Not here: the numbers that probes give ([`super::probe`]), the tests that hold them.
 
-pub mod air_spectral;
+pub mod air;
 pub mod ephemeris;
 pub mod kepler;
 pub mod orbit;
@@ -15,16 +15,12 @@ pub mod orbit_stress;
 pub mod ships;
 
 use super::Error;
-use super::stage::Stage;
 use crate::cli::Bench;
 
 /// Runs a bench.
 pub fn run(bench: &Bench) -> Result<(), Error> {
     match bench {
-        Bench::Air(args) => {
-            let rows = air_spectral::rows(&Stage::set(&args.places)?.assets, &args.body)?;
-            Ok(orbit_rows::write(&rows, args.json.as_deref())?)
-        }
+        Bench::Air(args) => air::run(args),
         Bench::Orbit(args) => orbit::run(args),
         Bench::Ships(args) => ships::run(args),
         Bench::Ephemeris(args) => ephemeris::run(args),

@@ -5,7 +5,7 @@
 
 use super::{Painter, PainterKind, Parts, no_settings};
 use crate::air::model::LimbTable as Settings;
-use crate::air::{Air, Medium, Model};
+use crate::air::{Air, Classes, Medium, Model};
 use crate::gpu::Gpu;
 use crate::gpu::buffer::Uniform;
 use crate::gpu::texture::Texture;
@@ -131,7 +131,7 @@ impl Painter for LimbTable {
             let [bottom_radius_m, top_altitude_m] = table.shell_m;
             let shell = Medium { bottom_radius_m, top_altitude_m, ground_albedo: Vec3::ZERO, layers: Vec::new() };
             let air = Uniform::new(&gpu.device, "limb_bake: Air", wgpu::BufferUsages::empty());
-            air.write(&gpu.queue, &AirUniform::new(&shell, &crate::air::Classes::of(&shell)));
+            air.write(&gpu.queue, &AirUniform::new(&shell, &Classes::of(&shell)));
             let sky = Uniform::new(&gpu.device, "limb_bake: Sky", wgpu::BufferUsages::empty());
             sky.write(&gpu.queue, &SkyUniform { settings: settings(&table.settings, &shell, &[]), ..SkyUniform::zeroed() });
             let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
