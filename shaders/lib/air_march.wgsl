@@ -75,6 +75,7 @@ fn air_march(
             let run = depths * GAUSS_RUN;
             let phased = mat4x3<f32>(m0.scattering * along.phase, m1.scattering * along.phase, m2.scattering * along.phase, m3.scattering * along.phase);
             let all = mat4x3<f32>(m0.scattering * ONES, m1.scattering * ONES, m2.scattering * ONES, m3.scattering * ONES);
+            var before = vec3<f32>(0.0);
             for (var j = 0u; j < 4u; j++) {
                 let one = select(vec4<f32>(0.0), ONES, vec4<u32>(0u, 1u, 2u, 3u) == vec4<u32>(j));
                 let s = dot(n.s, one);
@@ -82,8 +83,13 @@ fn air_march(
                 if AIR_ECLIPSES && shade.falls {
                     eclipse = eclipse_at(body, star, ray * (path.start + s), air.shape.y);
                 }
-                out.radiance += (dot(n.span * GAUSS_WEIGHT, one) * exp(-depth - run * one))
+                // Where a point stands for much optical depth, the collocation overshoots: there its source is taken as even over its share.
+                let own = depths * (GAUSS_WEIGHT * one);
+                let even = (1.0 - exp(-own)) / max(own, vec3<f32>(1e-6));
+                let seen = mix(exp(-clamp(run * one - before, vec3<f32>(0.0), own)), even, smoothstep(vec3<f32>(0.25), vec3<f32>(1.0), own));
+                out.radiance += (dot(n.span * GAUSS_WEIGHT, one) * exp(-depth - before)) * seen
                     * air_source(air, transmittance, orders, linear, slot, along, sun, phased * one, all * one, s, dot(n.altitude, one), eclipse);
+                before += own;
             }
             depth += depths * GAUSS_WEIGHT;
         }

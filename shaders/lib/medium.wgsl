@@ -51,7 +51,8 @@ fn air_to_rgb(air: Air, k: u32) -> mat3x3<f32> {
 fn air_density(air: Air, altitude: f32) -> vec4<f32> {
     let h = max(altitude, -AIR_FLOOR_M);
     let tent = clamp(min((h - air.tent_bottom) * air.tent_rise, (air.tent_top - h) * air.tent_fall), vec4<f32>(0.0), vec4<f32>(1.0));
-    return select(exp(-h * air.inverse_height), tent, air.tent_rise > vec4<f32>(0.0));
+    // Far below the datum a thin layer would be denser than a number can be.
+    return select(exp(min(-h * air.inverse_height, vec4<f32>(60.0))), tent, air.tent_rise > vec4<f32>(0.0));
 }
 
 // A row of the table at a column that need not be whole.

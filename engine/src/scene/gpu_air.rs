@@ -148,12 +148,14 @@ pub fn media_rows(medium: &Medium, classes: &Classes) -> Vec<[f32; 4]> {
         let root = x * (1.0 + floor) - floor;
         root * root.abs() * medium.top_altitude_m
     };
+    // Far below the datum a thin layer would be denser than an f32 can be.
+    let held = |v: DVec3| vec4(narrow3(v.min(DVec3::splat(1e20))), 0.0);
     let mut rows: Vec<[f32; 4]> = Vec::with_capacity(MEDIA_ROWS * MEDIA_COLUMNS);
     for k in 0..Classes::MAX {
         let of = |x: f64| classes.list.get(k).map_or(DVec3::ZERO, |c| c.scattering(medium, altitude(x)));
-        rows.extend(columns().map(|x| vec4(narrow3(of(x)), 0.0)));
+        rows.extend(columns().map(|x| held(of(x))));
     }
-    rows.extend(columns().map(|x| vec4(narrow3(medium.extinction(altitude(x))), 0.0)));
+    rows.extend(columns().map(|x| held(medium.extinction(altitude(x)))));
     let value = |k: usize, x: f64| classes.list.get(k).map_or(0.0, |c| c.value(libm::cos(x * x * core::f64::consts::PI)));
     rows.extend(columns().map(|x| [0, 1, 2, 3].map(|k| narrow(value(k, x)))));
     rows
