@@ -58,6 +58,7 @@
 //! | … `profile` | `{ kind = "exponential", scale_height_m }`, `{ kind = "tent", bottom_m, peak_m, top_m }`, `{ kind = "constant", bottom_m, top_m }`, `{ kind = "table", altitude_m = [..], density = [..] }`; a `gas` needs none |
 //! | … `phase` | `{ kind = "rayleigh" }`, `"henyey_greenstein"` and `"cornette_shanks"` with `g`, `"elek_rayleigh"`, `"isotropic"`, `{ kind = "table", angle_deg = [..], value = [..] }`; a `gas` or an `absorber` needs none |
 //! | `[thickness]`, `[limb_table]`, `[view_table]`, `[gradient]` | *optional*, the settings of that model; every key may be left out: see [`engine::air::model`] |
+//! | `[[fog]]` | *optional*, banks of fog and nebulae, whatever the `model`: `latitude_deg`, `longitude_deg`, `altitude_m` of the centre, `radius_m`; *optional* `name`, `thickness = { … }` with the keys of `[thickness]` |
 //! | `[physics]` | *optional*, what drags: `kind = "us76"` (Earth) or `"hydrostatic"`; `drag_top_m`; hydrostatic also `temperature_k`, `pressure_pa`, `molar_mass_kg_mol`, `heat_capacity_ratio`, *optional* `lapse = [{ to_altitude_m, k_per_m }]`. Gravity is the body's own |
 //!
 //! # `system.toml`

@@ -149,7 +149,7 @@ pub fn reread_airs(overlay: &Overlay, system: &System) -> Result<Arc<System>, As
     let mut bodies = system.bodies.clone();
     for body in &mut bodies {
         let (air, drag) = read_atmosphere(overlay, &body.key, Datum::new(body.gm_m3_s2, body.radius_m), &system.starlight, &faults);
-        (body.air, body.look) = (air.column, air.look);
+        (body.air, body.look, body.fog) = (air.column, air.look, air.fog);
         drags.insert(body.key.clone(), drag);
     }
     let hash = whole_hash(&system.solid_hash, &drags);
@@ -207,7 +207,7 @@ fn read_atmosphere(overlay: &Overlay, body: &str, datum: Datum, star: &Starlight
         physics.value.digest(&mut hash);
     }
     (
-        read_air(&Reader::new(&tree, faults), datum, &Setting { beside: &|name| overlay.find(format!("bodies/{body}/{name}")), star }),
+        read_air(&Reader::new(&tree, faults), datum, &Setting { overlay, folder: &format!("bodies/{body}"), star }),
         hash.finalize().to_hex().to_string(),
     )
 }
@@ -384,6 +384,7 @@ fn build(
         intensity_cd: s.intensity_cd,
         air: air.column,
         look: air.look,
+        fog: air.fog,
         relief,
         relief_max: s.relief.as_ref().map_or(1.0, |(_, max)| *max),
     });

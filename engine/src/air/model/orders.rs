@@ -66,7 +66,7 @@ impl SunMap {
     /// For the air of a medium.
     pub fn new(medium: &Medium) -> Self {
         let (sine, cosine) = dip(medium.bottom_radius_m, medium.top_altitude_m);
-        let scale = 1.0 / (0.25 * libm::atan2(sine, cosine)).max(0.01);
+        let scale = 1.0 / (0.35 * libm::atan2(sine, cosine)).max(0.01);
         let low = libm::asinh(core::f64::consts::SQRT_2 * scale);
         let high = libm::asinh((2.0 * (1.0 + sine)).sqrt() * scale);
         Self { scale, low, inverse: 1.0 / (low + high) }

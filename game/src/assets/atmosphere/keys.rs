@@ -24,6 +24,7 @@ pub const ATMOSPHERE: &[Field] = &[
     may("layers", Kind::Tables(LAYER), "what scatters and absorbs, any number of layers; `layers = []` is a vacuum"),
     may("physics", Kind::Variants(PHYSICS), "what drags; apart from the look. Without it nothing does"),
     may("physical", Kind::Table(PHYSICAL), "settings of the model \"physical\""),
+    may("fog", Kind::Tables(FOG), "banks of fog and nebulae: balls of air that turn with the body, whatever its own air is"),
     may("thickness", Kind::Table(THICKNESS), "settings of the model \"thickness\""),
     may("limb_table", Kind::Table(LIMB_TABLE), "settings of the model \"limb_table\""),
     may("view_table", Kind::Table(VIEW_TABLE), "settings of the model \"view_table\""),
@@ -254,4 +255,14 @@ const GRADIENT: &[Field] = &[
         Kind::File,
         "PNG, 32 × 2 texels. Top row: the air's colour; bottom row: by what the sun's is multiplied. Left: midnight, right: noon",
     ),
+];
+
+/// A bank of fog, or a nebula.
+pub const FOG: &[Field] = &[
+    may("name", Kind::Text, "what patches call it"),
+    must("latitude_deg", Kind::Number(Span::linear(-90.0, 90.0)), "of its centre, planetocentric"),
+    must("longitude_deg", Kind::Number(Span::linear(-360.0, 360.0)), "of its centre, east"),
+    must("altitude_m", Kind::Number(Span::log(-1.0e4, 1.0e13)), "of its centre, above the datum"),
+    must("radius_m", Kind::Number(Span::log(1.0, 1.0e13)), "of the ball"),
+    may("thickness", Kind::Table(THICKNESS), "how it looks: as the model \"thickness\"; `scale_m` is its diameter where it is left out"),
 ];

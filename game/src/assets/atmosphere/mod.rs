@@ -3,6 +3,7 @@
 //! The keys are data ([`keys`]); a file that holds to them is built into the engine's types here and by [`layers`], whose range checks'
 //! messages find their line. An air that can be built and is hardly meant is told by [`plausible`].
 
+pub mod fog;
 pub mod keys;
 pub mod layers;
 pub mod optics;
@@ -10,9 +11,10 @@ pub mod plausible;
 
 use super::fault::Fault;
 use super::fields;
-use super::overlay::{DATA_MAX, read_bytes};
+use super::overlay::{DATA_MAX, Overlay, read_bytes};
 use super::reader::{ANY, Reader};
 use super::tree::{Data, Node};
+use crate::world::system::Fog;
 use engine::air::density::Lapse;
 use engine::air::model::{ColourMap, Gradient};
 use engine::air::spectral::SpectralMedium;
@@ -20,7 +22,6 @@ use engine::air::{Air, Column, ColumnSpec, Model, RangeError};
 use engine::light::spectrum::Starlight;
 use engine::units::NM;
 use optics::Channels;
-use std::path::PathBuf;
 
 /// Air as its file describes it.
 #[derive(Clone, Debug, Default)]
@@ -31,6 +32,8 @@ pub struct AirSpec {
     pub look: Option<Air>,
     /// What `look` was drawn from.
     pub by_wavelength: Option<SpectralMedium>,
+    /// Banks of fog and nebulae.
+    pub fog: Vec<Fog>,
 }
 
 /// What a body lends to its air.
@@ -55,8 +58,10 @@ impl Datum {
 /// What an air is seen by, and where the files lie that it names.
 #[derive(Clone, Copy)]
 pub struct Setting<'a> {
-    /// Where a file beside the air's own lies, if there is one of this name.
-    pub beside: &'a dyn Fn(&str) -> Option<PathBuf>,
+    /// The assets with mods over them.
+    pub overlay: &'a Overlay,
+    /// The folder of the file, from the root of the assets.
+    pub folder: &'a str,
     /// The light under which its colours are found.
     pub star: &'a Starlight,
 }
@@ -73,7 +78,7 @@ pub fn read_air(r: &Reader<'_>, datum: Datum, setting: &Setting<'_>) -> AirSpec 
     if let Some(look) = look.as_ref().filter(|_| r.errors() == before) {
         plausible::suspicions(r.node, look, column.as_ref(), datum.gravity_m_s2).into_iter().for_each(|s| r.fault(s));
     }
-    AirSpec { column, look, by_wavelength }
+    AirSpec { column, look, by_wavelength, fog: fog::read(r, datum) }
 }
 
 /// Turns range errors into faults; `table` is where their fields are, with a point behind it.
@@ -176,10 +181,10 @@ fn painted(table: Option<&Node>, gradient: &mut Gradient, setting: &Setting<'_>,
     for (key, map) in keys::MAPS.into_iter().zip([&mut gradient.shell_map, &mut gradient.ground_map]) {
         let Some(entry) = table.and_then(|t| t.get(key)) else { continue };
         let name = entry.value.text().unwrap_or_default();
-        let plain = !name.contains(['/', '\\', ':']);
-        let fault = match Some(name).filter(|_| plain).and_then(setting.beside) {
-            None => Fault::at(&entry.value.at, format!("`gradient.{key}` = \"{name}\": expected a PNG that lies beside this file"))
-                .help(Some("in a mod it may also lie beside the file that a patch changes, in the assets".to_owned())),
+        let relative = format!("{}/{name}", setting.folder);
+        let fault = match setting.overlay.find(&relative).filter(|_| !name.contains("..")) {
+            None => Fault::at(&entry.value.at, format!("`gradient.{key}` = \"{name}\": expected a PNG beside this file"))
+                .help(Some(format!("looked for {relative} in the assets and in the mods"))),
             Some(path) => match read_bytes(&path, DATA_MAX).and_then(|bytes| painting(&bytes).map_err(|what| Fault::file(&path, what))) {
                 Ok(painted) => {
                     *map = painted;
