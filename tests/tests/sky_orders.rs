@@ -114,10 +114,10 @@ fn the_sky_s_irradiance_is_the_integral_of_its_radiance() {
     for name in ["earth", "dusty"] {
         let planet = planet(name);
         let mut baker = AirBaker::new(&gpu, &ShaderLibrary::checkout()).expect("it compiles");
-        baker.bake_alone(&gpu, &planet.medium);
+        baker.bake_alone(&gpu, &planet.medium.clone().into());
         let table = readback::texture_f32(&gpu, &baker.textures()[1].texture, 0).expect("it can be read");
         // Even in the squared sine of the zenith angle, and in azimuth.
-        let (heights, turns) = (48, 32);
+        let (heights, turns) = (48_u32, 32_u32);
         let mut cases = Vec::new();
         let mut rays = Vec::new();
         for altitude_m in [2.0, 3000.0] {
