@@ -429,12 +429,14 @@ impl Ephemeris {
         let Some(s) = &self.system else { return };
         let ticks = t.ticks.saturating_sub(s.tree.epoch.ticks);
         let known = |i: usize| i < s.tree.gm.len() || s.tree.has_light(i - s.tree.gm.len());
-        let zero = (DVec3::ZERO, DVec3::ZERO);
-        let tracks: Vec<Pair> = (0..2 * s.tree.gm.len()).map(|i| if known(i) { s.track(i, ticks, 0.0) } else { zero }).collect();
-        out.extend(s.whole.iter().map(|list| {
-            let sum = list.iter().fold((DVec3::ZERO, DVec3::ZERO), |sum, (k, w)| (sum.0 + tracks[*k].0 * *w, sum.1 + tracks[*k].1 * *w));
-            wrap(sum)
-        }));
+        // Tracks first, then bodies from them, then the tracks go: a list of their own would be asked of the allocator every time.
+        let tracks = 2 * s.tree.gm.len();
+        out.extend((0..tracks).map(|i| if known(i) { wrap(s.track(i, ticks, 0.0)) } else { State::default() }));
+        for list in &s.whole {
+            let sum = list.iter().fold((DVec3::ZERO, DVec3::ZERO), |sum, (k, w)| add(sum, (out[*k].position.0, out[*k].velocity.0), *w));
+            out.push(wrap(sum));
+        }
+        out.drain(..tracks);
     }
 
     /// Bounds on where a body can be, seen from its parent.
