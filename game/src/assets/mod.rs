@@ -75,6 +75,7 @@ pub mod body;
 pub mod draft;
 pub mod fault;
 pub mod fields;
+pub mod listing;
 pub mod overlay;
 pub mod planet;
 pub mod reader;
@@ -186,12 +187,12 @@ impl Assets {
 
     /// The bodies there are.
     pub fn bodies(&self) -> Vec<String> {
-        system::bodies(&self.overlay)
+        listing::bodies(&self.overlay)
     }
 
     /// One body checked: its own files, and the systems that list it. Those, and what is hardly meant.
     pub fn check_body(&self, key: &str) -> Result<(Vec<String>, Vec<String>), AssetErrors> {
-        let systems: Vec<String> = self.systems().into_iter().filter(|s| system::lists(&self.overlay, s, key)).collect();
+        let systems: Vec<String> = self.systems().into_iter().filter(|s| listing::lists(&self.overlay, s, key)).collect();
         let (mut errors, mut warnings) = (AssetErrors::default(), Vec::new());
         if systems.is_empty() {
             warnings.extend(errors.keep(system::load_body(&self.overlay, key)).into_iter().flatten());
@@ -217,7 +218,7 @@ impl Assets {
             systems.insert(key, system);
         }
         for body in self.bodies() {
-            if !systems.keys().any(|s| system::lists(&self.overlay, s, &body)) {
+            if !systems.keys().any(|s| listing::lists(&self.overlay, s, &body)) {
                 warnings.extend(errors.keep(system::load_body(&self.overlay, &body)).into_iter().flatten());
             }
         }
