@@ -52,7 +52,9 @@ pub enum Mode {
     #[command(after_help = "Example:\n  syzygy shot --start eclipse --camera chase --size 1280x720 --out shot.png --passes passes.json")]
     Shot(ShotArgs),
     /// Validate a system, body or mod folder and list every error
-    #[command(after_help = "Example:\n  syzygy check-assets mods/my-moon")]
+    #[command(
+        after_help = "Examples:\n  syzygy check-assets mods/my-moon\n  syzygy check-assets --schema atmosphere > atmosphere.schema.json"
+    )]
     CheckAssets(CheckAssetsArgs),
     /// Ask the simulation for numbers, as JSON or CSV
     #[command(subcommand, after_help = "Example:\n  syzygy probe air --body earth --altitude-m 0 11000 50000")]
@@ -94,6 +96,9 @@ pub struct PlayArgs {
     /// Size of the window, pixels
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub size: Option<(u32, u32)>,
+    /// Let the editor of airs write into the game's own assets (in a checkout), not into a mod
+    #[arg(long)]
+    pub edit_assets: bool,
     #[command(flatten)]
     /// Folders.
     pub places: Places,
@@ -214,9 +219,23 @@ pub struct CheckAssetsArgs {
     /// The folder to check (else the assets in use)
     #[arg(value_name = "DIR")]
     pub dir: Option<PathBuf>,
+    /// Print the JSON Schema of a kind of file, for editors of TOML, and check nothing
+    #[arg(long, value_enum, value_name = "KIND")]
+    pub schema: Option<SchemaKind>,
     #[command(flatten)]
     /// Folders.
     pub places: Places,
+}
+
+/// Kinds of files that have a schema.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum SchemaKind {
+    /// atmosphere.toml
+    #[value(name = "atmosphere")]
+    Atmosphere,
+    /// atmosphere.patch.toml
+    #[value(name = "atmosphere.patch")]
+    AtmospherePatch,
 }
 
 /// What can be asked for.

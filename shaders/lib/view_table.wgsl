@@ -16,6 +16,7 @@ struct ViewTable {
     tint: vec4<f32>,         // rgb: colour of what is in alpha over its mean; w: 1 where it is reddened as RGB is
     inverse: vec4<f32>,      // rgb: 1 / vertical scattering depth of RGB, 0 where that is 0
     counts: vec4<u32>,       // trapezoids of a ray, of a depth; directions of the ambient integral each way; 1: graded
+    ids: vec4<i32>,          // id of the body; −1: of none
 }
 
 // What light meets at a height: scattering of RGB, of alpha (mean of the channels); extinction. Per m.
@@ -78,6 +79,18 @@ fn view_colour(vt: ViewTable, entry: vec4<f32>, phases: vec2<f32>) -> vec3<f32> 
         }
     }
     return entry.rgb * phases.x + colour * (entry.a * phases.y);
+}
+
+// Luminance over illuminance that water on the datum mirrors to the eye: the table seen from the ground along the reflected ray. `view`
+// goes to the eye; all unit, with the zenith in one frame. [Elek 2008, §3.5]; by how much of it the water answers is the caller's.
+fn view_mirrored(
+    air: Air, media: texture_2d_array<f32>, slot: i32, vt: ViewTable, scatter: texture_3d<f32>, linear: sampler,
+    up: vec3<f32>, view: vec3<f32>, sun: vec3<f32>,
+) -> vec3<f32> {
+    let ray = 2.0 * dot(view, up) * up - view;
+    let values = air_phase(air, media, slot, dot(ray, sun));
+    let entry = view_entry(air, vt, scatter, linear, 0.0, max(dot(ray, up), 0.0), false, dot(sun, up));
+    return view_colour(vt, entry, vec2<f32>(dot(values, vt.rgb_phase), dot(values, vt.alpha_phase)));
 }
 
 // Over a short way: what is gathered and the depth of it, by the air itself. Differences of two table entries would be mostly error.

@@ -8,6 +8,7 @@
 #include "lib/lambert.wgsl"
 #include "lib/daylight.wgsl"
 #include "lib/shadow.wgsl"
+#include "lib/view_table.wgsl"
 
 @group(0) @binding(0) var<uniform> frame: Frame;
 @group(0) @binding(1) var<uniform> bodies: Bodies;
@@ -19,6 +20,9 @@
 @group(1) @binding(5) var shadow_map: texture_depth_2d;
 @group(1) @binding(6) var shadow_compare: sampler_comparison;
 @group(1) @binding(7) var<uniform> shadow: Shadow;
+@group(1) @binding(8) var media: texture_2d_array<f32>;
+@group(1) @binding(12) var mirror_scatter: texture_3d<f32>;
+@group(1) @binding(13) var<uniform> mirror: ViewTable;
 @group(2) @binding(0) var albedo_map: texture_2d<f32>;
 @group(2) @binding(1) var night_map: texture_2d<f32>;
 @group(3) @binding(0) var<uniform> paint: Paint;
@@ -199,8 +203,16 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
         let below = mix(vec3<f32>(0.0035, 0.012, 0.026), vec3<f32>(0.05, 0.12, 0.11), shallow * 0.7);
         let foam = shallow * near * smoothstep(0.25, 0.6, w0 + 0.6 * w2 + 0.4) * smoothstep(-0.6, 0.0, height) * near;
         let fresnel = water_fresnel(max(dot(up, view), 0.0) * 0.9 + 0.08);
-        luminance = mix(below, vec3<f32>(0.6), foam) / PI * (direct * max(mu_s, 0.0) + sky) * (1.0 - fresnel)
-            + sky / PI * fresnel
+        var mirrored = sky / PI;
+        var share = fresnel;
+        if mirror.ids.x == body.ids.x {
+            let air = airs.list[u32(max(body.ids.z, 0))];
+            mirrored = body.illuminance.rgb * eclipse_visible(body, frame.star, icrf)
+                * view_mirrored(air, media, body.ids.z, mirror, mirror_scatter, linear, up, view, sun);
+            share = 1.0 - max(dot(up, view), 0.0);  // [Elek 2008, eq. 3.8]
+        }
+        luminance = mix(below, vec3<f32>(0.6), foam) / PI * (direct * max(mu_s, 0.0) + sky) * (1.0 - share)
+            + mirrored * share
             + direct * water_glint(up, view, sun, SEA_SLOPES) * (1.0 - foam);
     } else {
         var m = Material(tint * (1.0 + 0.16 * coarse + 0.20 * fine), 1.0);

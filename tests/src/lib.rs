@@ -23,21 +23,7 @@ pub fn gpu() -> Gpu {
 /// # Panics
 /// Where the shader is not valid or the device fails.
 pub fn ask_shader(library: &str, main: &str, entry: &str, questions: &[[f32; 4]]) -> Vec<[f32; 4]> {
-    ask_shader_with(&gpu(), library, main, entry, questions, &[])
-}
-
-/// [`ask_shader`] with more bound in group 0, from binding 2 on.
-///
-/// # Panics
-/// As that does.
-pub fn ask_shader_with(
-    gpu: &Gpu,
-    library: &str,
-    main: &str,
-    entry: &str,
-    questions: &[[f32; 4]],
-    more: &[wgpu::BindGroupEntry<'_>],
-) -> Vec<[f32; 4]> {
+    let gpu = gpu();
     let text = ShaderLibrary::checkout().flatten(library).expect("the library is there").text + main;
     let module = gpu
         .device
@@ -54,14 +40,13 @@ pub fn ask_shader_with(
     let buffer = |usage| gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some("questions"), contents, usage });
     let given = buffer(wgpu::BufferUsages::STORAGE);
     let found = buffer(wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
-    let both = [
-        wgpu::BindGroupEntry { binding: 0, resource: given.as_entire_binding() },
-        wgpu::BindGroupEntry { binding: 1, resource: found.as_entire_binding() },
-    ];
     let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: Some(entry),
         layout: &pipeline.get_bind_group_layout(0),
-        entries: &[&both, more].concat(),
+        entries: &[
+            wgpu::BindGroupEntry { binding: 0, resource: given.as_entire_binding() },
+            wgpu::BindGroupEntry { binding: 1, resource: found.as_entire_binding() },
+        ],
     });
     let mut encoder = gpu.encoder(entry);
     let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
@@ -71,5 +56,5 @@ pub fn ask_shader_with(
     drop(pass);
     gpu.submit(encoder);
     assert_eq!(gpu.take_error(), None);
-    bytemuck::pod_collect_to_vec(&readback::buffer(gpu, &found).expect("answers come back"))
+    bytemuck::pod_collect_to_vec(&readback::buffer(&gpu, &found).expect("answers come back"))
 }

@@ -88,6 +88,11 @@ fn mirrored_structs_have_the_layout_of_their_twins() {
         ("lib/sky_pixel.wgsl", "Sky", fields!(rust::SkyUniform { ids, settings })),
         ("lib/sky_pixel.wgsl", "ProbeRay", fields!(ProbeRay { up, ray, sun })),
         ("lib/sky_pixel.wgsl", "ProbeLight", fields!(ProbeLight { radiance, transmittance })),
+        (
+            "lib/view_table.wgsl",
+            "ViewTable",
+            fields!(rust::ViewTableUniform { rgb, alpha, rgb_phase, alpha_phase, tint, inverse, counts, ids }),
+        ),
         ("lib/shadow.wgsl", "Shadow", fields!(rust::ShadowUniform { map_from_icrf, shape })),
         ("lib/ship.wgsl", "Ship", fields!(rust::ShipInstance { centre, hull_x, hull_y, hull_z, state })),
         ("lib/height.wgsl", "Octave", fields!(ground::OctaveUniform { cell_m, weight, flat_floor, density, seed, pad0, pad1, pad2 })),

@@ -225,7 +225,7 @@ fn a_camera_within_the_shadow_loses_nothing_to_the_near_plane() {
         let truth = q.truth();
         assert!(truth.shadowed_m > 1.0e4, "{truth:?}");
         let off = |w: Widths| (w.shadowed_m - truth.shadowed_m).abs();
-        assert!(buffered(q, &bare).shadowed_m == 0.0, "the fault is gone from its own emulation");
+        assert!(buffered(q, &bare).shadowed_m <= 0.0, "the fault is gone from its own emulation");
         worst = [worst[0].max(off(buffered(q, &bare))), worst[1].max(off(buffered(q, &remedied))), worst[2].max(off(ours))];
     }
     let [bare, remedied, ours] = worst;

@@ -7,8 +7,10 @@ use engine::air::model::view_table::Split;
 use engine::air::{Air, Layer, Medium, Model, Phase, Profile, reference};
 use engine::gpu::ShaderLibrary;
 use engine::render::pass::sky_probe::{ProbeLight, ProbeOptions, ProbeRay, probe};
+use engine::render::{OffscreenImage, Renderer, RendererOptions, Target};
+use engine::scene::{AutoOr, Body, Camera, Force, Snapshot, Star, Surface};
 use engine::space::relative::narrow;
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Quat, Vec3};
 
 /// An Earth of air and aerosol.
 fn medium() -> Medium {
@@ -192,10 +194,74 @@ fn nothing_is_nan_wherever_one_stands() {
                 }
             }
         }
-        for (ray, light) in rays.iter().zip(ask(&medium, &ViewTable { samples: 12, ..ViewTable::default() }, &rays)) {
+        for (ray, light) in rays.iter().zip(ask(
+            &medium,
+            &ViewTable { height_size: 8, view_size: 16, sun_size: 12, samples: 12, ..ViewTable::default() },
+            &rays,
+        )) {
             let fine =
                 light.radiance.iter().all(|x| x.is_finite() && *x >= 0.0) && light.transmittance.iter().all(|x| (0.0..=1.0).contains(x));
             assert!(fine, "{ray:?}: {light:?}");
         }
+    }
+}
+
+#[test]
+fn the_ground_is_lit_by_its_own_tables() {
+    // A Lambert ball seen from two metres straight down: [eq. 3.6] and [eq. 3.7] on it, and next to no air before it.
+    let medium = medium();
+    let model = ViewTable::default();
+    let split = Split::new(&medium);
+    let gpu = tests::gpu();
+    let mut renderer =
+        Renderer::new(&gpu, RendererOptions { shaders: ShaderLibrary::checkout(), ..RendererOptions::default() }).expect("it compiles");
+    let image = OffscreenImage::new(&gpu, [16, 16]);
+    for delta_deg in [20.0, 60.0, 85.0_f64] {
+        let delta = delta_deg.to_radians();
+        let sun = DVec3::new(delta.sin(), 0.0, delta.cos());
+        let air = Air { medium: medium.clone(), bands: None, model: Model::ViewTable(model.clone()) };
+        let scene = looking_down(&medium, air, sun);
+        renderer.render(&gpu, &scene, Target::Image(&image), None).expect("it is drawn");
+        let found = renderer.read_hdr(&gpu).expect("it is read").rgba;
+        let direct = (-model.depth(&medium, 0.0, delta.cos())).exp() * delta.cos();
+        let ambient = model.ambient(&medium, &split, delta);
+        let truth = (direct + ambient) * f64::from(ALBEDO * LUX) / std::f64::consts::PI;
+        for channel in 0..3 {
+            let pixel = f64::from(found[(8 * 16 + 8) * 4 + channel]);
+            let error = pixel / truth[channel] - 1.0;
+            assert!(error.abs() < 0.03, "sun {delta_deg}° from the zenith, channel {channel}: {pixel}, not {}", truth[channel]);
+        }
+    }
+}
+
+const ALBEDO: f32 = 0.3;
+const LUX: f32 = 1.0e5;
+
+fn looking_down(medium: &Medium, air: Air, sun: DVec3) -> Snapshot {
+    let altitude = 2.0;
+    let sun_direction = Vec3::new(narrow(sun.x), narrow(sun.y), narrow(sun.z));
+    let body = Body {
+        id: 7,
+        centre_m: Vec3::NEG_Z * narrow(medium.bottom_radius_m + altitude),
+        radius_m: narrow(medium.bottom_radius_m),
+        icrf_from_fixed: Quat::IDENTITY,
+        camera_altitude_m: narrow(altitude),
+        camera_up: Vec3::Z,
+        sun_direction,
+        sun_angular_radius_rad: 0.0047,
+        sun_illuminance_lx: Vec3::splat(LUX),
+        occluders: Vec::new(),
+        albedo: Vec3::splat(ALBEDO),
+        surface: Surface::Smooth,
+        air: Some(air),
+    };
+    Snapshot {
+        camera: Camera { view_from_icrf: Quat::IDENTITY, fov_y_rad: 0.2, near_m: 0.1, size_px: [16, 16] },
+        star: Star { id: 0, centre_m: sun_direction * 1.5e11, radius_m: 7.0e8, intensity_cd: Vec3::splat(LUX * 2.25e22) },
+        bodies: vec![body],
+        ships: Vec::new(),
+        exposure: AutoOr::Ev100(13.0),
+        adapt_s: None,
+        force: Force::default(),
     }
 }

@@ -38,10 +38,36 @@ impl Texture {
         Self { texture, view }
     }
 
+    /// A 3-D texture of one level.
+    pub fn volume(device: &wgpu::Device, label: &str, size: [u32; 3], format: wgpu::TextureFormat, usage: wgpu::TextureUsages) -> Self {
+        let texture = device.create_texture(&wgpu::TextureDescriptor {
+            label: Some(label),
+            size: wgpu::Extent3d { width: size[0].max(1), height: size[1].max(1), depth_or_array_layers: size[2].max(1) },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D3,
+            format,
+            usage,
+            view_formats: &[],
+        });
+        let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+        Self { texture, view }
+    }
+
     /// A view as a 2-D array, also where there is one layer only.
     pub fn array_view(&self) -> wgpu::TextureView {
         self.texture
             .create_view(&wgpu::TextureViewDescriptor { dimension: Some(wgpu::TextureViewDimension::D2Array), ..Default::default() })
+    }
+
+    /// A view of one layer of an array, as a plain texture.
+    pub fn layer_view(&self, layer: u32) -> wgpu::TextureView {
+        self.texture.create_view(&wgpu::TextureViewDescriptor {
+            dimension: Some(wgpu::TextureViewDimension::D2),
+            base_array_layer: layer,
+            array_layer_count: Some(1),
+            ..Default::default()
+        })
     }
 
     /// A view of one mip level.

@@ -93,6 +93,11 @@ fn light(f: &mut FrameContext<'_>, passes: &mut Passes) -> Result<wgpu::TextureV
         passes.sky.record_tables(f);
     }
 
+    let skip = passes.sky.skip_daylight(f);
+    if f.runs("sky_daylight", skip) {
+        passes.sky.record_daylight(f, passes.air_tables.textures());
+    }
+
     let skip = passes.terrain.plan(f.gpu, f.scene, f.maps);
     if f.runs("tile_heights", skip) {
         passes.terrain.record_heights(f);
@@ -101,7 +106,7 @@ fn light(f: &mut FrameContext<'_>, passes: &mut Passes) -> Result<wgpu::TextureV
     let skip = passes.shadow.skip(f.scene);
     let shadow = if f.runs("shadow", skip) { passes.shadow.record(f, &mut passes.ship_geometry) } else { passes.no_shadow.clone() };
 
-    let light = f.shared.light_group(f.gpu, &air, &shadow);
+    let light = f.shared.light_group(f.gpu, &air, passes.sky.mirror(f.scene), &shadow);
 
     let skip = passes.smooth_body.skip(f.scene);
     if f.runs("smooth_body", skip) {

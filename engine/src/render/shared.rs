@@ -3,19 +3,19 @@
 //! | group | holds | who makes it |
 //! |---|---|---|
 //! | 0 | 0 `Frame`, 1 `Bodies`, 2 `Exposure` (all uniform; `shaders/lib/frame.wgsl`) | [`Shared`], each frame |
-//! | 1 | 0 airs (uniform), 1 transmittance, 2 further orders (3-D), 3 irradiance (1, 3: 2-D arrays, a layer per air slot), 4 linear sampler, 5 shadow map, 6 comparison sampler, 7 shadow (uniform), 8 media (2-D array, loaded) | [`Shared::light_group`], from the values of the air-table and shadow passes |
+//! | 1 | 0 airs (uniform), 1 transmittance, 2 further orders (3-D), 3 irradiance (1, 3: 2-D arrays, a layer per air slot), 4 linear sampler, 5 shadow map, 6 comparison sampler, 7 shadow (uniform), 8 media (2-D array, loaded), 12 scattering (3-D) and 13 `ViewTable` (uniform) of the world whose water mirrors them | [`Shared::light_group`], from the values of the air-table, sky and shadow passes |
 //! | 2, 3 | the pass's own | the pass |
 
 use super::maps::MapStore;
 use super::pipeline::{depth_entry, loaded_entry, sampler_entry, texture_entry, uniform_entry};
 use super::report::{AirReport, FrameReport, PassReport};
-use super::targets::{DEPTH, Targets};
+use super::targets::{DEPTH, HDR, Targets};
 use crate::gpu::Gpu;
 use crate::gpu::buffer::Uniform;
 use crate::gpu::texture::{Texture, linear_sampler};
 use crate::gpu::timer::Timer;
 use crate::scene::Snapshot;
-use crate::scene::gpu_data::{BodiesUniform, ExposureUniform, FrameUniform, ShadowUniform};
+use crate::scene::gpu_data::{BodiesUniform, ExposureUniform, FrameUniform, ShadowUniform, ViewTableUniform};
 use wgpu::BufferUsages;
 
 /// Tables of air, as the later passes see them: a layer per slot.
@@ -31,6 +31,15 @@ pub struct AirTables {
     pub irradiance: wgpu::TextureView,
     /// Media that are not formulas (`shaders/lib/medium.wgsl`), 2-D array, not filterable.
     pub media: wgpu::TextureView,
+}
+
+/// The sky that water mirrors: tables of a body whose model is `view_table`.
+#[derive(Clone, Debug)]
+pub struct Mirror {
+    /// Its 3-D table.
+    pub scatter: wgpu::TextureView,
+    /// `ViewTable` of `shaders/lib/view_table.wgsl`, as a uniform; it names the body.
+    pub uniform: wgpu::Buffer,
 }
 
 /// The ship's shadow map, as the later passes see it.
@@ -67,6 +76,16 @@ pub struct Shared {
     pub compare: wgpu::Sampler,
 }
 
+impl Mirror {
+    /// No such body.
+    pub fn none(gpu: &Gpu) -> Self {
+        let uniform = Uniform::<ViewTableUniform>::new(&gpu.device, "ViewTable", BufferUsages::empty());
+        uniform.write(&gpu.queue, &ViewTableUniform::none());
+        let usage = wgpu::TextureUsages::TEXTURE_BINDING;
+        Self { scatter: Texture::volume(&gpu.device, "no mirror", [1; 3], HDR, usage).view, uniform: uniform.buffer }
+    }
+}
+
 impl ShadowMap {
     /// Nothing throws a shadow.
     pub fn none(gpu: &Gpu) -> Self {
@@ -97,6 +116,8 @@ impl Shared {
                 sampler_entry(6, wgpu::SamplerBindingType::Comparison),
                 uniform_entry(7),
                 loaded_entry(8, array),
+                texture_entry(12, wgpu::TextureViewDimension::D3),
+                uniform_entry(13),
             ],
         });
         let frame = Uniform::new(d, "Frame", BufferUsages::empty());
@@ -130,8 +151,8 @@ impl Shared {
         self.exposure_next.write(&gpu.queue, value);
     }
 
-    /// Group 1 from the values of the air-table and shadow passes.
-    pub fn light_group(&self, gpu: &Gpu, air: &AirTables, shadow: &ShadowMap) -> wgpu::BindGroup {
+    /// Group 1 from the values of the air-table, sky and shadow passes.
+    pub fn light_group(&self, gpu: &Gpu, air: &AirTables, mirror: &Mirror, shadow: &ShadowMap) -> wgpu::BindGroup {
         use wgpu::BindingResource::{Sampler, TextureView};
         let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
         gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
@@ -147,6 +168,8 @@ impl Shared {
                 entry(6, Sampler(&self.compare)),
                 entry(7, shadow.uniform.as_entire_binding()),
                 entry(8, TextureView(&air.media)),
+                entry(12, TextureView(&mirror.scatter)),
+                entry(13, mirror.uniform.as_entire_binding()),
             ],
         })
     }

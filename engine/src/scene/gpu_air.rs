@@ -170,13 +170,19 @@ pub struct ViewTableUniform {
     pub tint: [f32; 4],
     pub inverse: [f32; 4],
     pub counts: [u32; 4],
+    pub ids: [i32; 4],
 }
 
 impl ViewTableUniform {
-    /// From the settings and what of the medium goes where.
-    pub fn new(settings: &ViewTable, split: &Split) -> Self {
+    /// Of no body.
+    pub fn none() -> Self {
+        Self { ids: [-1; 4], ..Self::zeroed() }
+    }
+
+    /// From the settings and what of the medium of body `id` goes where.
+    pub fn new(id: u16, settings: &ViewTable, split: &Split) -> Self {
         let flag = |on: bool| if on { 1.0 } else { 0.0 };
-        let mut all = Self::zeroed();
+        let mut all = Self { ids: [i32::from(id), 0, 0, 0], ..Self::zeroed() };
         let first = split.in_rgb.iter().position(|r| *r);
         for (i, in_rgb) in split.in_rgb.iter().enumerate().take(Classes::MAX) {
             all.rgb[i] = flag(*in_rgb);

@@ -17,9 +17,13 @@
 //! - *modify*: `body.patch.toml`, `atmosphere.patch.toml` or `system.patch.toml` changes only the keys that it holds. Tables merge key by
 //!   key (one whose `kind` changes is replaced), values and lists are replaced. A *table* laid over a *list* changes items of the list:
 //!   `[layers.dust]` those keys of the layer named `dust`, `layers.remove = ["ozone"]` takes out, `[[layers.add]]` appends; likewise
-//!   `bodies.add = ["vulcan"]` in a system.
+//!   `bodies.add = ["vulcan"]` in a system. `remove = ["scale_m"]` in a table takes a key out.
 //!
-//! `syzygy check-assets DIR` tells everything that is wrong at once, in the words in which the game tells it.
+//! `syzygy check-assets DIR` tells everything that is wrong at once, in the words in which the game tells it. What can be used and is hardly
+//! meant is a warning ([`atmosphere::plausible`]).
+//!
+//! A file that is saved while one flies is there within 0.3 s ([`reload`]); files named `atmosphere…` (painted maps as well) are read alone.
+//! The editor in the game turns an air and writes its file ([`draft`]).
 //!
 //! # What a flight depends on
 //! A replay refuses other assets than its own: it compares [`System::hash`], which is made of the *values* that the World reads. Comments,
@@ -49,8 +53,12 @@
 //!
 //! | table | keys |
 //! |---|---|
-//! | (top) | `top_altitude_m`, `ground_albedo`, any number of `[[layers]]`; *optional* `spectrum`: `"rgb"` (each channel by one wavelength, the default) or `"spectral"` (six bands); *optional* `wavelengths_nm`: where numbers in threes hold, 680, 550, 440 by default |
-//! | `[[layers]]` | *optional* `name` (for patches); `scattering_per_m` and `absorption_per_m` (at density 1), or in their place `gas`, `aerosol`, `absorber` or `table`: see [`engine::air::optics`]; `profile` (`{ kind = "exponential", scale_height_m }`, `"tent"`, `"constant"`, `"table"`), `phase` (`{ kind = "rayleigh" }`, `{ kind = "cornette_shanks", g }` …) |
+//! | (top) | *optional* `model`: `"physical"` (the same as none), `"thickness"`, `"limb_table"`, `"view_table"`, `"gradient"`, `"none"` (nothing is seen); *optional* `spectrum`: `"rgb"` (the same as none) or `"spectral"`; *optional* `wavelengths_nm = [red, green, blue]`, where numbers in threes hold; `top_altitude_m`; `ground_albedo` and `layers` (*optional* but for `physical` and `view_table`) |
+//! | `[[layers]]` | any number; *optional* `name` (for patches), `profile`, `phase`, and *one* of: `scattering_per_m` with `absorption_per_m` (at density 1), `gas`, `aerosol`, `absorber`, `table`: see [`engine::air::optics`] |
+//! | … `profile` | `{ kind = "exponential", scale_height_m }`, `{ kind = "tent", bottom_m, peak_m, top_m }`, `{ kind = "constant", bottom_m, top_m }`, `{ kind = "table", altitude_m = [..], density = [..] }`; a `gas` needs none |
+//! | … `phase` | `{ kind = "rayleigh" }`, `"henyey_greenstein"` and `"cornette_shanks"` with `g`, `"elek_rayleigh"`, `"isotropic"`, `{ kind = "table", angle_deg = [..], value = [..] }`; a `gas` or an `absorber` needs none |
+//! | `[thickness]`, `[limb_table]`, `[view_table]`, `[gradient]` | *optional*, the settings of that model; every key may be left out: see [`engine::air::model`] |
+//! | `[[fog]]` | *optional*, banks of fog and nebulae, whatever the `model`: `latitude_deg`, `longitude_deg`, `altitude_m` of the centre, `radius_m`; *optional* `name`, `thickness = { … }` with the keys of `[thickness]` |
 //! | `[physics]` | *optional*, what drags: `kind = "us76"` (Earth) or `"hydrostatic"`; `drag_top_m`; hydrostatic also `temperature_k`, `pressure_pa`, `molar_mass_kg_mol`, `heat_capacity_ratio`, *optional* `lapse = [{ to_altitude_m, k_per_m }]`. Gravity is the body's own |
 //!
 //! # `system.toml`
@@ -58,11 +66,13 @@
 //! `name`, `gm_km3_s2`, `position_km`, `velocity_km_s` from the barycentre at the epoch of the star.
 //!
 //! # Here
-//! [`system`], [`ship`] and [`start`] load; [`reader`] takes keys out of a [`tree`] and gathers [`fault`]s; [`overlay`] finds and reads
-//! files; [`reload`] watches them. Not here: what a World does with it all.
+//! [`system`], [`ship`] and [`start`] load; [`reader`] takes keys out of a [`tree`] and gathers [`fault`]s; [`fields`] are keys as data, of which
+//! reader, [`schema`] and editor are made; [`overlay`] finds and reads files, [`write`](mod@write) changes them; [`reload`] watches them. Not
+//! here: what a World does with it all.
 
 pub mod atmosphere;
 pub mod body;
+pub mod draft;
 pub mod fault;
 pub mod fields;
 pub mod overlay;
@@ -75,6 +85,7 @@ pub mod ship;
 pub mod start;
 pub mod system;
 pub mod tree;
+pub mod write;
 
 pub use fault::{AssetErrors, Fault};
 pub use reload::Reloader;
@@ -178,17 +189,17 @@ impl Assets {
         system::bodies(&self.overlay)
     }
 
-    /// One body checked: its own files, and the systems that list it; these are told.
-    pub fn check_body(&self, key: &str) -> Result<Vec<String>, AssetErrors> {
+    /// One body checked: its own files, and the systems that list it. Those, and what is hardly meant.
+    pub fn check_body(&self, key: &str) -> Result<(Vec<String>, Vec<String>), AssetErrors> {
         let systems: Vec<String> = self.systems().into_iter().filter(|s| system::lists(&self.overlay, s, key)).collect();
-        let mut errors = AssetErrors::default();
+        let (mut errors, mut warnings) = (AssetErrors::default(), Vec::new());
         if systems.is_empty() {
-            errors.keep(system::load_body(&self.overlay, key));
+            warnings.extend(errors.keep(system::load_body(&self.overlay, key)).into_iter().flatten());
         }
         for system in &systems {
-            errors.keep(self.system(system, &|_, _| ()));
+            warnings.extend(errors.keep(self.system(system, &|_, _| ())).into_iter().flat_map(|s| s.warnings.clone()));
         }
-        errors.or(systems)
+        errors.or((systems, warnings))
     }
 
     /// The ships there are.
@@ -196,13 +207,19 @@ impl Assets {
         self.overlay.names("ships", Some(".toml")).into_iter().collect()
     }
 
-    /// Everything, checked: what `check-assets` does.
-    pub fn check(&self) -> Result<(), AssetErrors> {
-        let mut errors = AssetErrors::default();
+    /// Everything, checked: what `check-assets` does. What is hardly meant comes back.
+    pub fn check(&self) -> Result<Vec<String>, AssetErrors> {
+        let (mut errors, mut warnings) = (AssetErrors::default(), Vec::new());
         let mut systems = std::collections::BTreeMap::new();
         for key in self.systems() {
             let system = errors.keep(self.system(&key, &|_, _| ()));
+            warnings.extend(system.iter().flat_map(|s| s.warnings.iter().cloned()));
             systems.insert(key, system);
+        }
+        for body in self.bodies() {
+            if !systems.keys().any(|s| system::lists(&self.overlay, s, &body)) {
+                warnings.extend(errors.keep(system::load_body(&self.overlay, &body)).into_iter().flatten());
+            }
         }
         for key in self.ships() {
             errors.keep(self.ship(&key));
@@ -221,9 +238,9 @@ impl Assets {
                 errors.keep(self.world(&key, &start, system, ship));
             }
         }
-        errors.or(())
+        errors.or(warnings)
     }
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

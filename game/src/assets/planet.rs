@@ -12,9 +12,9 @@
 //! ```
 //! Not here: bodies of a system ([`super::body`]); the keys of an air ([`super::atmosphere::keys`]).
 
-use super::atmosphere::{Datum, read_air};
+use super::atmosphere::{Datum, Setting, read_air};
 use super::fault::{AssetErrors, Fault};
-use super::overlay::read_text;
+use super::overlay::{Overlay, read_text};
 use super::reader::{Faults, POSITIVE, Reader};
 use super::tree::{Data, Entry, Node, parse};
 use engine::air::Air;
@@ -53,7 +53,7 @@ pub fn read_planet(path: &Path, model: Option<&str>) -> Result<Planet, AssetErro
         name_model(air, word);
     }
     let faults = Faults::default();
-    let planet = read(Reader::new(&top, &faults), elsewhere.as_ref(), &faults);
+    let planet = read(Reader::new(&top, &faults), elsewhere.as_ref(), path.parent().unwrap_or(Path::new("")), &faults);
     let found = AssetErrors { faults: faults.into_inner() };
     for warning in found.faults.iter().filter(|f| !f.is_error()) {
         tracing::warn!("{warning}");
@@ -80,7 +80,8 @@ fn name_model(air: &mut Node, word: &str) {
     entries.push(Entry { key: "model".to_owned(), key_at: at, value });
 }
 
-fn read(r: Reader<'_>, elsewhere: Option<&Node>, faults: &Faults) -> Option<Planet> {
+/// `folder` is where the files lie that its air names.
+fn read(r: Reader<'_>, elsewhere: Option<&Node>, folder: &Path, faults: &Faults) -> Option<Planet> {
     let radius_m = r.number("radius_km", POSITIVE) * KM;
     let star = r.table("star").map(|t| {
         let wavelengths_nm: [f64; 3] = t.numbers("wavelengths_nm", 1.0..=1e6);
@@ -99,12 +100,14 @@ fn read(r: Reader<'_>, elsewhere: Option<&Node>, faults: &Faults) -> Option<Plan
     // Nothing is dragged here: gravity only serves the plausibility of `[physics]`, and stands for Earth's.
     let gm_m3_s2 = 9.8 * radius_m * radius_m;
     let datum = Datum::new(gm_m3_s2, radius_m);
+    let overlay = Overlay::new(folder, &[]);
+    let setting = Setting { overlay: &overlay, folder: ".", star: &Starlight::default() };
     let air = match elsewhere {
         Some(node) => {
             r.text("atmosphere");
-            read_air(&Reader::new(node, faults), datum, &Starlight::default())
+            read_air(&Reader::new(node, faults), datum, &setting)
         }
-        None => r.table("atmosphere").map(|t| read_air(&t, datum, &Starlight::default())).unwrap_or_default(),
+        None => r.table("atmosphere").map(|t| read_air(&t, datum, &setting)).unwrap_or_default(),
     };
     r.finish();
     Some(Planet { star: star?, air: air.look? })

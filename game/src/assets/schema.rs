@@ -29,6 +29,9 @@ fn named(schema: &mut Value, title: &str) {
 fn table(fields: &[Field], patch: bool) -> Value {
     let properties: Map<String, Value> = fields.iter().map(|f| (f.key.to_owned(), field(f, patch))).collect();
     let mut schema = json!({ "type": "object", "properties": properties, "additionalProperties": false });
+    if patch {
+        schema["properties"]["remove"] = json!({ "type": "array", "items": { "type": "string" }, "description": "keys to take out" });
+    }
     let needed: Vec<&str> = fields.iter().filter(|f| f.must && !patch).map(|f| f.key).collect();
     if !needed.is_empty() {
         schema["required"] = json!(needed);

@@ -1,6 +1,6 @@
 //! A system from its file: that of every body that it lists is read and checked, all faults are gathered, and only a system without any is built.
 
-use super::atmosphere::{AirSpec, Datum, read_air};
+use super::atmosphere::{AirSpec, Datum, Setting, read_air};
 use super::body::{BodySpec, read_body};
 use super::fault::{AssetErrors, At, Fault, nearest};
 use super::overlay::{Overlay, read_text};
@@ -153,7 +153,7 @@ pub fn reread_airs(overlay: &Overlay, system: &System) -> Result<Arc<System>, As
     let mut bodies = system.bodies.clone();
     for body in &mut bodies {
         let (air, drag) = read_atmosphere(overlay, &body.key, Datum::new(body.gm_m3_s2, body.radius_m), &system.starlight, &faults);
-        (body.air, body.look) = (air.column, air.look);
+        (body.air, body.look, body.fog) = (air.column, air.look, air.fog);
         drags.insert(body.key.clone(), drag);
     }
     let hash = whole_hash(&system.solid_hash, &drags);
@@ -222,17 +222,22 @@ pub fn lists(overlay: &Overlay, system: &str, body: &str) -> bool {
     list.iter().any(|item| item.text() == Some(body))
 }
 
-/// A body's own files, checked without the bodies around it.
-pub fn load_body(overlay: &Overlay, key: &str) -> Result<(), AssetErrors> {
+/// The files of a body that no system lists, checked without the bodies around it; what is hardly meant comes back.
+pub fn load_body(overlay: &Overlay, key: &str) -> Result<Vec<String>, AssetErrors> {
     let faults = Faults::default();
     tell_orphans(overlay, &faults);
     if let Some(tree) = read_tree(overlay, &format!("bodies/{key}/body.toml"), "the body", &faults) {
+        let unlisted = Fault::warning(&tree.at, "no system lists this body: nobody will see it");
+        let help = format!("a mod adds it with systems/<system>/system.patch.toml: bodies.add = [\"{key}\"]");
+        faults.borrow_mut().push(unlisted.help(Some(help)));
         let spec = read_body(key, Reader::new(&tree, &faults));
         read_atmosphere(overlay, key, Datum::new(spec.gm_m3_s2, spec.radius_m), &Starlight::default(), &faults);
         let ground = if count_errors(&faults) == 0 { ground(&spec, overlay, &format!("bodies/{key}")) } else { Ground::default() };
         faults.borrow_mut().extend(ground.faults);
     }
-    AssetErrors { faults: faults.into_inner() }.or(())
+    let found = AssetErrors { faults: faults.into_inner() };
+    let warnings = found.faults.iter().map(Fault::text).collect();
+    found.or(warnings)
 }
 
 /// The air of a body alone.
@@ -283,7 +288,10 @@ fn read_atmosphere(overlay: &Overlay, body: &str, datum: Datum, star: &Starlight
     if let Some(physics) = tree.get("physics") {
         physics.value.digest(&mut hash);
     }
-    (read_air(&Reader::new(&tree, faults), datum, star), hash.finalize().to_hex().to_string())
+    (
+        read_air(&Reader::new(&tree, faults), datum, &Setting { overlay, folder: &format!("bodies/{body}"), star }),
+        hash.finalize().to_hex().to_string(),
+    )
 }
 
 /// Feeds a file's values to the hash, but for what a flight does not depend on.
@@ -470,6 +478,7 @@ fn build(
         intensity_cd: s.intensity_cd,
         air: air.column,
         look: air.look,
+        fog: air.fog,
         relief,
         relief_max: s.relief.as_ref().map_or(1.0, |(_, max)| *max),
     });

@@ -1,7 +1,8 @@
 //! Malformed assets, one test a case: each must end in a message with the file, the line and what was expected. Also what mods may do.
-//! The real solar system is measured in [`sol`].
+//! The real solar system is measured in [`sol`] and [`moons`].
 
 mod optics;
+mod moons;
 mod sol;
 
 use super::*;
@@ -62,7 +63,7 @@ ridged = 0.2
 seed = 7
 "#;
 
-const AIR: &str = r#"top_altitude_m = 80000.0
+pub(crate) const AIR: &str = r#"top_altitude_m = 80000.0
 ground_albedo = [0.1, 0.1, 0.1]
 [[layers]]
 scattering_per_m = [5.8e-6, 13.5e-6, 33.1e-6]
@@ -125,7 +126,7 @@ heading_deg = 90.0
 const TORCH: &str = include_str!("../../../assets/ships/torch.toml");
 
 /// A small, valid assets folder.
-fn assets() -> tempfile::TempDir {
+pub(crate) fn assets() -> tempfile::TempDir {
     let dir = tempfile::tempdir().unwrap();
     for (path, text) in [
         (SYSTEM_FILE, "name = \"T\"\nbodies = [\"moon\", \"rock\", \"sun\"]\n"),
@@ -141,7 +142,7 @@ fn assets() -> tempfile::TempDir {
     dir
 }
 
-fn put(root: &Path, path: &str, bytes: &[u8]) -> PathBuf {
+pub(crate) fn put(root: &Path, path: &str, bytes: &[u8]) -> PathBuf {
     let file = root.join(path);
     fs::create_dir_all(file.parent().unwrap()).unwrap();
     fs::write(&file, bytes).unwrap();
@@ -194,7 +195,7 @@ fn malformed(file: &str, from: &str, to: &str, line: usize, words: &[&str]) {
 const SUN_FILE: &str = "bodies/sun/body.toml";
 const ROCK_FILE: &str = "bodies/rock/body.toml";
 const SYSTEM_FILE: &str = "systems/t/system.toml";
-const AIR_FILE: &str = "bodies/rock/atmosphere.toml";
+pub(crate) const AIR_FILE: &str = "bodies/rock/atmosphere.toml";
 const MOON_FILE: &str = "bodies/moon/body.toml";
 const START_FILE: &str = "starts/here.toml";
 const SHIP_FILE: &str = "ships/torch.toml";
@@ -389,6 +390,27 @@ fn the_hash_follows_what_a_flight_depends_on() {
     assert_ne!(before, drags);
     put(dir.path(), MOON_FILE, MOON.replace("radius_km = 500.0", "radius_km = 500.5").as_bytes());
     assert_ne!(drags, hash());
+}
+
+#[test]
+fn banks_of_fog_are_placed_and_their_faults_told() {
+    let dir = assets();
+    let put_fog = |text: &str| put(dir.path(), AIR_FILE, format!("{AIR}{text}").as_bytes());
+    let bank = "[[fog]]\nlatitude_deg = 90.0\nlongitude_deg = 0.0\naltitude_m = 1000.0\nradius_m = 500.0\n";
+    put_fog(&format!("{bank}thickness = {{ opacity = 2.0, shadow = \"cylinder\" }}\n{bank}"));
+    let system = load_system(dir.path(), &[], "t").unwrap();
+    let fog = &system.body(system.find("rock").unwrap()).fog;
+    assert_eq!(fog.len(), 2);
+    assert!((fog[0].centre_m - 6.001e6 * glam::DVec3::Z).length() < 1e-3, "{}", fog[0].centre_m);
+    assert_eq!(fog[0].air.medium.top_altitude_m, 500.0);
+    let engine::air::Model::Thickness(look) = &fog[0].air.model else { panic!("{:?}", fog[0].air.model) };
+    assert_eq!((look.opacity, look.shadow), (2.0, engine::air::model::thickness::ShadowShape::Cylinder));
+    assert_eq!(fog[1].air.model, engine::air::Model::Thickness(engine::air::model::Thickness::default()));
+    put_fog(&bank.replace("radius_m = 500.0", "radius_m = -5.0\nradus_m = 1.0\nthickness = { opacity = -1.0 }"));
+    let told = load_system(dir.path(), &[], "t").unwrap_err().text();
+    for part in ["radius_m", "radus_m", "opacity"] {
+        assert!(told.contains(part), "{part} in: {told}");
+    }
 }
 
 #[test]

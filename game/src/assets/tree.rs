@@ -1,9 +1,8 @@
 //! The tree of a TOML file in which every key and value knows its place, also after patches from other files were laid over it.
 //!
 //! A patch holds only what it changes. Tables merge key by key, but for one whose `kind` changes: the keys of the old kind go with it.
-//! A value or a list replaces what was there. A *table* laid over a
-//! *list* changes items of the list: `[layers.dust]` patches the item whose `name` is `dust`, `remove = ["ozone"]` takes items out,
-//! `add = [...]` appends.
+//! A value or a list replaces what was there; `remove = ["scale_m"]` in a table takes keys out. A *table* laid over a *list* changes items
+//! of the list: `[layers.dust]` patches the item whose `name` is `dust`, `remove = ["ozone"]` takes items out, `add = [...]` appends.
 //!
 //! Not here: what the keys mean ([`super::reader`]).
 
@@ -115,6 +114,20 @@ fn convert_table(source: &Arc<Source>, table: &DeTable<'_>) -> Data {
     Data::Table(entries)
 }
 
+/// Takes keys out of a table.
+fn take_out(table: &mut Vec<Entry>, keys: &[Node], faults: &mut Vec<Fault>) {
+    for key in keys {
+        let name = key.text().unwrap_or_default();
+        match table.iter().position(|e| e.key == name) {
+            Some(i) => drop(table.remove(i)),
+            None => {
+                let fault = Fault::at(&key.at, format!("`remove`: the table has no key `{name}`: expected the name of one"));
+                faults.push(fault.help(nearest(name, table.iter().map(|e| e.key.as_str()))));
+            }
+        }
+    }
+}
+
 /// Lays a table over a list: `add`, `remove`, and items by their names.
 fn change(list: &mut Vec<Node>, changes: Vec<Entry>, faults: &mut Vec<Fault>) {
     let unknown = |list: &[Node], at: &At, name: &str| {
@@ -155,6 +168,10 @@ impl Node {
                     return;
                 }
                 for entry in theirs {
+                    if let ("remove", Data::Array(keys)) = (entry.key.as_str(), &entry.value.data) {
+                        take_out(mine, keys, faults);
+                        continue;
+                    }
                     match mine.iter_mut().find(|e| e.key == entry.key) {
                         Some(old) if matches!((&old.value.data, &entry.value.data), (Data::Table(_) | Data::Array(_), Data::Table(_))) => {
                             old.value.patch(entry.value, faults);

@@ -190,6 +190,9 @@ pub fn pause(ctx: &egui::Context, hud: &mut Hud, reply: &mut Reply) {
                 hud.photo.enter();
                 hud.screen = Screen::Photo;
             }
+            if choice(ui, "Edit the air", true) {
+                reply.requests.push(Request::EditAir);
+            }
             if choice(ui, "Settings", true) {
                 hud.screen = Screen::Options;
             }

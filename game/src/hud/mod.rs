@@ -5,6 +5,7 @@
 //! Read [`Hud::show`] for what stands on which screen. Not here: windows and textures ([`crate::mode`]), the bindings
 //! themselves ([`crate::input`]).
 
+pub mod air;
 pub mod ball;
 pub mod calendar;
 pub mod conic;
@@ -62,6 +63,8 @@ pub enum Screen {
     Surface,
     /// Photo mode.
     Photo,
+    /// The editor of airs.
+    Air,
     /// After a crash.
     Crash,
 }
@@ -98,6 +101,10 @@ pub enum Request {
     Keep,
     /// Save a picture.
     Picture,
+    /// Edit the air of the body that the ship is at.
+    EditAir,
+    /// Write the edited air into its file.
+    SaveAir,
     /// The next camera.
     NextCamera,
     /// Quick save.
@@ -186,6 +193,8 @@ pub struct Hud {
     pub surface: surface::SurfaceView,
     /// Photo mode.
     pub photo: photo::Photo,
+    /// Editor of airs.
+    pub air: air::Editor,
     /// Crash screen.
     pub crash: crash::Review,
     /// Settings screen.
@@ -259,6 +268,11 @@ impl Hud {
             }
             (Screen::Calendar, Some(scene)) => calendar::show(ctx, scene, self, &mut reply),
             (Screen::Photo, Some(scene)) => photo::show(ctx, scene, &mut self.photo, &mut reply),
+            (Screen::Air, Some(scene)) => {
+                let body = scene.world.system.find(self.air.draft.as_ref().map_or("", |d| d.body.as_str()));
+                let name = body.map_or("", |b| scene.name(b));
+                air::show(ctx, &mut self.air, name, &mut self.screen, &mut reply);
+            }
             (Screen::Crash, Some(scene)) => crash::show(ctx, scene, self, &mut reply),
         }
         if self.help {
@@ -334,6 +348,7 @@ mod tests {
             Screen::Map,
             Screen::Surface,
             Screen::Photo,
+            Screen::Air,
             Screen::Crash,
         ];
         for shown in std::iter::once(readout()).chain(extremes()) {

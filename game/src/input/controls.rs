@@ -113,6 +113,7 @@ controls! {
     SurfaceMap, View, "Surface map", ["key:B"];
     Camera, View, "Next camera", ["key:C", "pad:North"];
     Photo, View, "Photo mode", ["key:V"];
+    EditAir, View, "Edit the air", ["key:F7"];
     HideHud, View, "Hide or show the HUD", ["key:F2"];
     SavePicture, View, "Save a picture", ["key:F12"];
     CameraUp, View, "Free camera up", ["key:R"];

@@ -253,7 +253,10 @@ impl Input {
         }
         for control in Control::ALL {
             let heard = matches!(self.focus, Focus::Flight | Focus::Camera)
-                || matches!(control, Control::Pause | Control::Help | Control::Photo | Control::HideHud | Control::SavePicture);
+                || matches!(
+                    control,
+                    Control::Pause | Control::Help | Control::Photo | Control::EditAir | Control::HideHud | Control::SavePicture
+                );
             if heard && self.bindings.sources(*control).contains(&source) {
                 self.queued.push(*control);
             }

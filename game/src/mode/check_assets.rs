@@ -1,20 +1,31 @@
 //! `syzygy check-assets [DIR]`: reads every asset of a folder and tells everything that is wrong with it, at once.
 //!
-//! DIR may be an assets folder, a mod (checked as it would lie over the assets in use), a system or a body of either.
+//! DIR may be an assets folder, a mod (checked as it would lie over the assets in use), a system or a body of either. What can be used and
+//! is hardly meant is a warning: it goes to stderr, and the exit code stays 0. `--schema KIND` prints a JSON Schema for editors instead.
 
 use super::{Error, places};
-use crate::assets::{AssetErrors, Assets};
-use crate::cli::CheckAssetsArgs;
+use crate::assets::atmosphere::keys::ATMOSPHERE;
+use crate::assets::{AssetErrors, Assets, schema};
+use crate::cli::{CheckAssetsArgs, SchemaKind};
 use std::path::{Path, PathBuf};
 
 /// What an assets folder has, and a mod seldom has all of.
 const WHOLE: [&str; 4] = ["systems", "bodies", "ships", "starts"];
 
-/// Checks what the command line names; one line on what was found good.
+/// What came of a check without faults.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Sound {
+    /// One line on what was found good.
+    pub line: String,
+    /// What can be used and is hardly meant.
+    pub warnings: Vec<String>,
+}
+
+/// Checks what the command line names.
 ///
 /// # Errors
 /// A folder that is none, or all faults.
-pub fn run(args: &CheckAssetsArgs) -> Result<String, Error> {
+pub fn run(args: &CheckAssetsArgs) -> Result<Sound, Error> {
     let mods = places::mods(&args.places)?;
     let dir = match &args.dir {
         Some(dir) if !dir.is_dir() => return Err(places::PlaceError::NoFolder { path: dir.clone(), what: "check-assets" }.into()),
@@ -39,23 +50,39 @@ enum Part {
 }
 
 /// Checks a part.
-fn check(assets: &Assets, part: &Part) -> Result<String, AssetErrors> {
-    match part {
+fn check(assets: &Assets, part: &Part) -> Result<Sound, AssetErrors> {
+    let (what, warnings) = match part {
         Part::Body(key) => {
-            let systems = assets.check_body(key)?;
-            Ok(format!("all sound: body {key}, listed by {}", if systems.is_empty() { "no system".to_owned() } else { systems.join(", ") }))
+            let (systems, warnings) = assets.check_body(key)?;
+            let by = if systems.is_empty() { "no system".to_owned() } else { systems.join(", ") };
+            (format!("body {key}, listed by {by}"), warnings)
         }
         Part::System(key) => {
             let system = assets.system(key, &|_, _| ())?;
-            Ok(format!("all sound: system {key} with {} bodies", system.bodies.len()))
+            (format!("system {key} with {} bodies", system.bodies.len()), system.warnings.clone())
         }
         Part::All => {
-            assets.check()?;
+            let warnings = assets.check()?;
             let (systems, bodies, ships, starts) =
                 (assets.systems().len(), assets.bodies().len(), assets.ships().len(), assets.starts().len());
-            Ok(format!("all sound: {systems} systems, {bodies} bodies, {ships} ships, {starts} starts"))
+            (format!("{systems} systems, {bodies} bodies, {ships} ships, {starts} starts"), warnings)
         }
-    }
+    };
+    let line = match warnings.len() {
+        0 => format!("all sound: {what}"),
+        1 => format!("sound, with a warning: {what}"),
+        n => format!("sound, with {n} warnings: {what}"),
+    };
+    Ok(Sound { line, warnings })
+}
+
+/// The schema of a kind of file, as JSON text.
+pub fn schema(kind: SchemaKind) -> String {
+    let schema = match kind {
+        SchemaKind::Atmosphere => schema::of_file("Syzygy: atmosphere.toml", ATMOSPHERE),
+        SchemaKind::AtmospherePatch => schema::of_patch("Syzygy: atmosphere.patch.toml", ATMOSPHERE),
+    };
+    format!("{schema:#}\n")
 }
 
 /// The assets or mod folder that a folder belongs to (`ROOT/systems/<system>`, `ROOT/bodies/<body>`), and what of it it is.
@@ -67,5 +94,20 @@ fn root_of(dir: &Path) -> (PathBuf, Part) {
         (Some(root), Some("systems"), Some(name)) => (root.to_owned(), Part::System(name)),
         (Some(root), Some("bodies"), Some(name)) => (root.to_owned(), Part::Body(name)),
         _ => (dir.to_owned(), Part::All),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_shipped_schemas_are_those_of_the_reader() {
+        for (kind, name) in [(SchemaKind::Atmosphere, "atmosphere"), (SchemaKind::AtmospherePatch, "atmosphere.patch")] {
+            let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../assets/{name}.schema.json"));
+            let shipped = std::fs::read_to_string(&path).unwrap_or_default().replace("\r\n", "\n");
+            let command = format!("syzygy check-assets --schema {name} > assets/{name}.schema.json");
+            assert!(shipped == schema(kind), "{} is not as the reader is: {command}", path.display());
+        }
     }
 }

@@ -109,10 +109,17 @@ pub fn run(cli: Cli) -> ExitCode {
         Mode::Headless(args) => headless(args).map(|()| ExitCode::SUCCESS),
         Mode::Replay(args) => Stage::set(&args.places).map(|stage| replay::run(args, &mut |state| stage.world(state))),
         Mode::Shot(args) => shot(args).map(|()| ExitCode::SUCCESS),
-        Mode::CheckAssets(args) => check_assets::run(args).map(|sound| {
-            println!("{sound}");
-            ExitCode::SUCCESS
-        }),
+        Mode::CheckAssets(args) => match args.schema {
+            Some(kind) => {
+                print!("{}", check_assets::schema(kind));
+                Ok(ExitCode::SUCCESS)
+            }
+            None => check_assets::run(args).map(|sound| {
+                sound.warnings.iter().for_each(|warning| eprintln!("{warning}\n"));
+                println!("{}", sound.line);
+                ExitCode::SUCCESS
+            }),
+        },
         Mode::Probe(probe) => probe::run(probe).map(|()| ExitCode::SUCCESS),
         Mode::Bench(bench) => bench::run(bench).map(|()| ExitCode::SUCCESS),
     };

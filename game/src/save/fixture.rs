@@ -31,6 +31,7 @@ fn body(key: &str, parent: Option<BodyId>, gm_m3_s2: f64, radius_m: f64) -> Body
         intensity_cd: Vec3::ZERO,
         air: None,
         look: None,
+        fog: Vec::new(),
         relief: parent.map(|_| Arc::new(Relief::smooth(radius_m, false))),
         relief_max: 1.0,
     }

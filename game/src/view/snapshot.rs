@@ -3,6 +3,7 @@
 //! Positions are taken from the host's centre first, so that the ground under the ship is exact to f64 at 6,000 km
 //! (1 nm) and not to f64 at one astronomical unit (30 µm).
 
+use super::fog;
 use super::rig::{CameraMode, Eye, Mount, Rig};
 use crate::command::{WARP_ONE, WARP_QUARTERS};
 use crate::world::World;
@@ -12,7 +13,7 @@ use crate::world::system::{self, System};
 use engine::orbit::{BodyId, State};
 use engine::scene::{Body, Camera, Force, Occluder, Ship, Snapshot, Star, Surface};
 use engine::space::relative::{narrow, narrow3, rotation};
-use engine::space::{Fixed, Icrf, Rotation};
+use engine::space::{Fixed, Icrf, Position, Rotation};
 use engine::terrain::{Relief, TileSet, View, select};
 use engine::time::TICK_S;
 use glam::{DQuat, DVec3};
@@ -60,6 +61,7 @@ pub fn snapshot(world: &World, rig: &Rig, picture: &Picture) -> (Snapshot, Eye) 
     };
     let stage = Stage { system: &world.system, sky: &sky, eye: &eye, camera: &camera };
     let mut bodies: Vec<Body> = (1..world.system.bodies.len()).map(|i| stage.body(id(i))).collect();
+    bodies.extend(fog::banks(&stage));
     bodies.sort_by(|a, b| a.centre_m.length().total_cmp(&b.centre_m.length()));
     let ship = ship(world, rig, &stage, &rigid, &bodies);
     let snapshot = Snapshot {
@@ -87,16 +89,17 @@ fn moved_on(world: &World, beyond_s: f64) -> Rigid {
     Rigid { state, icrf_from_hull: Rotation::new(now.icrf_from_hull.0 * turn), ..now }
 }
 
-struct Stage<'a> {
-    system: &'a System,
-    sky: &'a Sky,
-    eye: &'a Eye,
-    camera: &'a Camera,
+/// Where everything stands for one picture.
+pub(super) struct Stage<'a> {
+    pub(super) system: &'a System,
+    pub(super) sky: &'a Sky,
+    pub(super) eye: &'a Eye,
+    pub(super) camera: &'a Camera,
 }
 
 impl Stage<'_> {
     /// A point given from a body's centre, from the camera.
-    fn seen_from_camera(&self, body: BodyId, offset: DVec3) -> DVec3 {
+    pub(super) fn seen_from_camera(&self, body: BodyId, offset: DVec3) -> DVec3 {
         let centre = if body == self.eye.host { DVec3::ZERO } else { (self.sky.position(body) - self.sky.position(self.eye.host)).0 };
         (centre - self.eye.position.0) + offset
     }
@@ -109,6 +112,16 @@ impl Stage<'_> {
             radius_m: narrow(star.radius_m),
             intensity_cd: star.intensity_cd,
         }
+    }
+
+    /// What may hide the star from a sphere about `centre`; its own body left out.
+    pub(super) fn occluders(&self, centre: Position<Icrf>, radius_m: f64, but: Option<BodyId>) -> Vec<Occluder> {
+        let occluder = |caster: BodyId| Occluder {
+            id: caster.0,
+            centre_m: narrow3(self.seen_from_camera(caster, DVec3::ZERO)),
+            radius_m: narrow(self.system.body(caster).radius_m),
+        };
+        eclipse::casters(self.system, self.sky, centre, radius_m, but).into_iter().map(occluder).collect()
     }
 
     fn body(&self, id: BodyId) -> Body {
@@ -138,14 +151,7 @@ impl Stage<'_> {
             sun_direction: narrow3(to_star / star_distance),
             sun_angular_radius_rad: narrow(libm::asin((star.radius_m / star_distance).min(1.0))),
             sun_illuminance_lx: star.intensity_cd * narrow(1.0 / (star_distance * star_distance)),
-            occluders: eclipse::casters(self.system, self.sky, self.sky.position(id), shell, Some(id))
-                .into_iter()
-                .map(|caster| Occluder {
-                    id: caster.0,
-                    centre_m: narrow3(self.seen_from_camera(caster, DVec3::ZERO)),
-                    radius_m: narrow(self.system.body(caster).radius_m),
-                })
-                .collect(),
+            occluders: self.occluders(self.sky.position(id), shell, Some(id)),
             albedo: body.albedo,
             surface,
             air: body.look.as_ref().filter(|_| radius_px >= AIR_FROM_PX).cloned(),

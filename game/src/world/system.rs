@@ -16,7 +16,7 @@ use engine::space::Centred;
 use engine::terrain::Relief;
 use engine::time::SimTime;
 use engine::units::SPEED_OF_LIGHT;
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use std::sync::Arc;
 
 /// Luminance of the linear sRGB primaries (IEC 61966-2-1).
@@ -53,10 +53,21 @@ pub struct Body {
     pub air: Option<Column>,
     /// Its air as it looks, if any. Nothing in the World reads it, so that its colours are no part of a flight.
     pub look: Option<Air>,
+    /// Banks of fog and nebulae that turn with it; looks too.
+    pub fog: Vec<Fog>,
     /// Its ground; `None` for the star and the giants (a ship sinks and is crushed: see `ship::contact`).
     pub relief: Option<Arc<Relief>>,
     /// Largest factor by which relief is exaggerated from afar (1 = never).
     pub relief_max: f64,
+}
+
+/// A ball of fog, or a nebula.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fog {
+    /// Centre, m from the body's, in its turning frame.
+    pub centre_m: DVec3,
+    /// What it is: its top altitude is its radius.
+    pub air: Air,
 }
 
 /// A planetary system.
@@ -118,6 +129,16 @@ impl System {
             eclipses: Almanac::default(),
         }
     }
+    /// The same with another look of a body's air.
+    #[must_use]
+    pub fn with_look(&self, body: BodyId, look: Option<Air>) -> Self {
+        let mut new = self.clone();
+        if let Some(body) = new.bodies.get_mut(body.index()) {
+            body.look = look;
+        }
+        new
+    }
+
     /// The body behind a handle.
     pub fn body(&self, id: BodyId) -> &Body {
         &self.bodies[id.index()]

@@ -40,6 +40,7 @@ fn rock(gm: f64, radius_m: f64, spin: Spin, air: Option<Column>) -> Body {
         intensity_cd: Vec3::ZERO,
         air,
         look: None,
+        fog: Vec::new(),
         relief: Some(Arc::new(Relief::smooth(radius_m, false))),
         relief_max: 1.0,
     }

@@ -7,14 +7,17 @@
 //! count along the view's axis and are divided by the span of his depth buffer; ours count along the ray and are divided by [`Thickness::unit_m`].
 //!
 //! Several bodies may throw a shadow: air is shadowed where any of the cones holds it. A shell without a planet
-//! (`bottom_radius_m` = 0) is a bank of fog, or a nebula.
+//! is a bank of fog, or a nebula: [`Thickness::ball`].
 //!
 //! GPU twin: `shaders/lib/thickness.wgsl`. Not here: reddening, penumbrae, light scattered twice: the model has none.
 
-use super::super::{Medium, RangeError};
+use super::super::{Air, Medium, Model, RangeError};
 use core::f64::consts::PI;
 use glam::{DVec3, Vec3};
 use serde::{Deserialize, Serialize};
+
+/// Radius of the core of a ball of air, m: altitudes are counted from it.
+const CORE_M: f64 = 1e-3;
 
 /// Settings of the model `thickness`: the table `[thickness]` of an `atmosphere.toml`. Every key may be left out.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -77,6 +80,12 @@ impl Thickness {
     pub fn unit_m(&self, medium: &Medium) -> f64 {
         let (bottom, top) = (medium.bottom_radius_m, medium.top_altitude_m);
         self.scale_m.unwrap_or_else(|| 2.0 * (top * (2.0 * bottom + top)).max(0.0).sqrt()).max(1.0)
+    }
+
+    /// A ball of such air without a planet: a bank of fog, or a nebula.
+    pub fn ball(self, radius_m: f64) -> Air {
+        let medium = Medium { bottom_radius_m: CORE_M, top_altitude_m: radius_m, ground_albedo: Vec3::ZERO, layers: Vec::new() };
+        Air { model: Model::Thickness(self), ..Air::from(medium) }
     }
 
     /// Radiance per unit of illuminance above the air (sr⁻¹, per channel), and how much of the light from behind comes through.
@@ -325,6 +334,22 @@ mod tests {
         assert!((widths.shadowed_m - half).abs() < 1e-3 && (widths.lit_m - (exit - half)).abs() < 1e-3, "{widths:?}");
         let cylinder = ShadowCone::new(DVec3::X * 3.63e8, 1.7374e6, sun, SUN, ShadowShape::Cylinder);
         assert_eq!(Widths::between(eye, ray, 0.0, exit, &[planet, cylinder]).lit_m, 0.0);
+    }
+
+    #[test]
+    fn a_ball_of_fog_is_as_thick_as_its_chord() {
+        let air = Thickness { brightness: 1.0, ..Thickness::default() }.ball(500.0);
+        let Model::Thickness(model) = &air.model else { panic!("{:?}", air.model) };
+        let (bottom, top) = (air.medium.bottom_radius_m, air.medium.top_altitude_m);
+        let chord = Chord::new(DVec3::new(-2000.0, 300.0, 0.0), DVec3::X, bottom, top).unwrap();
+        assert!((chord.exit_m - chord.start_m - 800.0).abs() < 0.01);
+        // Its diameter counts as one, and a planet's shadow that holds half of it leaves the rest lit.
+        let planet = ShadowCone { centre: DVec3::new(0.0, 0.0, 6.0e6), axis: DVec3::NEG_Z, radius_m: 6.0e6, sine: 0.0 };
+        let aside = ShadowCone { centre: DVec3::new(6.0e6, 0.0, 0.0), axis: DVec3::NEG_Z, ..planet };
+        let widths = |cone| Widths::between(DVec3::new(-2000.0, 300.0, 0.0), DVec3::X, chord.start_m, chord.exit_m, &[cone]);
+        assert!((widths(planet).shadowed_m - 800.0).abs() < 0.01 && (widths(aside).shadowed_m - 400.0).abs() < 0.01);
+        let (radiance, _) = model.light(widths(aside), model.unit_m(&air.medium));
+        assert!((radiance.z * PI - (0.4 + 0.2 * 0.4)).abs() < 1e-5);
     }
 
     #[test]

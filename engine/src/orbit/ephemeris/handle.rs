@@ -3,6 +3,7 @@
 use super::chunk::Chunk;
 use super::level::{Checkpoint, Heard, Kind, Level, Plan};
 use super::mean;
+use super::moons::Outside;
 use super::orbit::{Details, EphemerisError, Orbit, check};
 use super::planets::Planets;
 use super::tree::{Pair, Tree, add};
@@ -24,7 +25,7 @@ const FIT: [f64; 2] = [1e-13, 1e-11];
 const FLOOR: f64 = 1e-15;
 /// Shortest revolutions that a chunk of light moons spans.
 const REVOLUTIONS: f64 = 32.0;
-/// Tides by other bodies on light moons count above this part of the planet's pull.
+/// The tide of another body on a light moon counts above this part of the planet's pull.
 const TIDE_COUNTS: f64 = 1e-10;
 
 /// Where every body of a system is, at any time. A handle: cheap to clone, shared between threads.
@@ -207,15 +208,15 @@ impl System {
             return None;
         }
         let start = Checkpoint { q: starts.iter().map(|s| s.0).collect(), v: starts.iter().map(|s| s.1).collect() };
-        let farthest = start.q.iter().map(|q| q.length()).fold(0.0, f64::max);
         let places = self.start_places();
-        let (mut others_gm, mut lists) = (Vec::new(), Vec::new());
+        let (mut outside, mut lists) = (Vec::new(), Vec::new());
         for (gm, list) in self.others(body) {
             // Half the distance at the start stands for the least.
             let distance = 0.5 * list.iter().fold(DVec3::ZERO, |sum, (track, w)| sum + places[*track] * *w).length();
-            let ratio = farthest / distance;
-            if gm / self.tree.gm[body] * ratio * ratio * ratio > TIDE_COUNTS {
-                others_gm.push(gm);
+            let strength = |q: &DVec3| gm / self.tree.gm[body] * (q.length() / distance).powi(3);
+            let felt_by: Vec<usize> = (0..start.q.len()).filter(|i| strength(&start.q[*i]) > TIDE_COUNTS).collect();
+            if !felt_by.is_empty() {
+                outside.push(Outside { gm, felt_by });
                 lists.push(list);
             }
         }
@@ -229,7 +230,7 @@ impl System {
             planet_gm: self.tree.gm[body],
             gm: bodies.iter().map(|b| self.tree.family_gm[*b]).collect(),
             figure: details.figures.get(body).and_then(Clone::clone).filter(|f| !f.is_point()),
-            others_gm,
+            outside,
             heard,
             others,
             shares: bodies.iter().map(|b| self.tree.share(*b)).collect(),

@@ -7,7 +7,7 @@ use crate::air::Air;
 use crate::gpu::{Gpu, ShaderLibrary, readback};
 use crate::render::RenderError;
 use crate::render::pipeline::{compute_pipeline, uniform_entry};
-use crate::render::shared::{ShadowMap, Shared};
+use crate::render::shared::{Mirror, ShadowMap, Shared};
 use crate::scene::gpu_data::{BodiesUniform, BodyUniform, FrameUniform, MAX_OCCLUDERS, SKY_SINGLE, SkyUniform, vec4};
 use crate::scene::{Body, Occluder, Surface};
 use crate::space::relative::narrow;
@@ -78,7 +78,6 @@ pub fn probe(
     frame.star = vec4(options.star.0, options.star.1);
     shared.frame.write(&gpu.queue, &frame);
     let tables = AirBaker::new(gpu, shaders)?.bake_alone(gpu, &air.medium);
-    let light = shared.light_group(gpu, &tables, &ShadowMap::none(gpu));
 
     let picture = picture_layout(gpu);
     let mut painter = painter(&Parts { gpu, shaders, shared: &shared, picture: &picture }, &air.model)?;
@@ -87,6 +86,8 @@ pub fn probe(
     painter.bake(gpu, &mut encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default()));
     gpu.submit(encoder);
 
+    let mirror = Mirror::none(gpu);
+    let light = shared.light_group(gpu, &tables, &mirror, &ShadowMap::none(gpu));
     let storage = |binding, read_only| wgpu::BindGroupLayoutEntry {
         binding,
         visibility: wgpu::ShaderStages::COMPUTE,

@@ -24,9 +24,11 @@ pub const ATMOSPHERE: &[Field] = &[
     may("layers", Kind::Tables(LAYER), "what scatters and absorbs, any number of layers; `layers = []` is a vacuum"),
     may("physics", Kind::Variants(PHYSICS), "what drags; apart from the look. Without it nothing does"),
     may("physical", Kind::Table(PHYSICAL), "settings of the model \"physical\""),
+    may("fog", Kind::Tables(FOG), "banks of fog and nebulae: balls of air that turn with the body, whatever its own air is"),
     may("thickness", Kind::Table(THICKNESS), "settings of the model \"thickness\""),
     may("limb_table", Kind::Table(LIMB_TABLE), "settings of the model \"limb_table\""),
     may("view_table", Kind::Table(VIEW_TABLE), "settings of the model \"view_table\""),
+    may("gradient", Kind::Table(GRADIENT), "settings of the model \"gradient\""),
 ];
 
 /// The models, and none.
@@ -35,6 +37,7 @@ pub const MODELS: &[(&str, &str)] = &[
     ("thickness", "as bright as the air is thick, shadowed air a fifth of that [Josth]"),
     ("limb_table", "a table over two cosines at the shell's top, added to the picture [Dolan]"),
     ("view_table", "single scattering from a table by height and two angles [Elek]"),
+    ("gradient", "colours of two small painted maps, without physics"),
     ("none", "nothing is seen of it; what drags is kept"),
 ];
 
@@ -229,4 +232,37 @@ const VIEW_TABLE: &[Field] = &[
         Kind::Choice(&[("proportional", "reddened as the air beside it is"), ("grey", "the particles' own colour, as in the thesis")]),
         "how the aerosol's light gets its colour",
     ),
+];
+
+/// The keys of [`GRADIENT`] that name pictures: of the shell, of the ground.
+pub const MAPS: [&str; 2] = ["shell_map", "ground_map"];
+
+/// Settings of the model `gradient`.
+const GRADIENT: &[Field] = &[
+    may("stretch", Kind::Number(Span::linear(0.0, 2.0)), "by how much day reaches beyond the terminator: where sunset begins"),
+    may("fade_stretch", Kind::Number(Span::linear(0.0, 2.0)), "by how much more the air is seen at all"),
+    may("visibility_m", Kind::Number(Span::log(1.0, 1.0e9)), "ground nearer than this is clear"),
+    may("transparency", Kind::Number(Span::linear(0.0, 1.0)), "how strong the air's colour can become over the ground"),
+    may("brightness", Kind::Number(Span::log(0.0, 100.0)), "of the map's white; 1 is a white surface that faces the sun"),
+    may("opacity", Kind::Number(Span::linear(0.0, 1.0)), "how much of the sky behind the shell is hidden where it is strongest"),
+    may(
+        MAPS[0],
+        Kind::File,
+        "PNG, 32 × 16 texels as a rule. Left: away from the sun, right: toward it; bottom: at the surface, top: at the edge",
+    ),
+    may(
+        MAPS[1],
+        Kind::File,
+        "PNG, 32 × 2 texels. Top row: the air's colour; bottom row: by what the sun's is multiplied. Left: midnight, right: noon",
+    ),
+];
+
+/// A bank of fog, or a nebula.
+pub const FOG: &[Field] = &[
+    may("name", Kind::Text, "what patches call it"),
+    must("latitude_deg", Kind::Number(Span::linear(-90.0, 90.0)), "of its centre, planetocentric"),
+    must("longitude_deg", Kind::Number(Span::linear(-360.0, 360.0)), "of its centre, east"),
+    must("altitude_m", Kind::Number(Span::log(-1.0e4, 1.0e13)), "of its centre, above the datum"),
+    must("radius_m", Kind::Number(Span::log(1.0, 1.0e13)), "of the ball"),
+    may("thickness", Kind::Table(THICKNESS), "how it looks: as the model \"thickness\"; `scale_m` is its diameter where it is left out"),
 ];

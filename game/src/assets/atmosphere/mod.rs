@@ -3,15 +3,20 @@
 //! The keys are data ([`keys`]); a file that holds to them is built into the engine's types here and by [`layers`], whose range checks'
 //! messages find their line. An air that can be built and is hardly meant is told by [`plausible`].
 
+pub mod fog;
 pub mod keys;
 pub mod layers;
 pub mod optics;
 pub mod plausible;
 
+use super::fault::Fault;
 use super::fields;
+use super::overlay::{DATA_MAX, Overlay, read_bytes};
 use super::reader::{ANY, Reader};
 use super::tree::{Data, Node};
+use crate::world::system::Fog;
 use engine::air::density::Lapse;
+use engine::air::model::{ColourMap, Gradient};
 use engine::air::spectral::SpectralMedium;
 use engine::air::{Air, Column, ColumnSpec, Model, RangeError};
 use engine::light::spectrum::Starlight;
@@ -27,6 +32,8 @@ pub struct AirSpec {
     pub look: Option<Air>,
     /// What `look` was drawn from.
     pub by_wavelength: Option<SpectralMedium>,
+    /// Banks of fog and nebulae.
+    pub fog: Vec<Fog>,
 }
 
 /// What a body lends to its air.
@@ -48,19 +55,30 @@ impl Datum {
     }
 }
 
-/// Reads the file: faults and warnings go to the reader. `star` is the light under which its colours are found.
-pub fn read_air(r: &Reader<'_>, datum: Datum, star: &Starlight) -> AirSpec {
+/// What an air is seen by, and where the files lie that it names.
+#[derive(Clone, Copy)]
+pub struct Setting<'a> {
+    /// The assets with mods over them.
+    pub overlay: &'a Overlay,
+    /// The folder of the file, from the root of the assets.
+    pub folder: &'a str,
+    /// The light under which its colours are found.
+    pub star: &'a Starlight,
+}
+
+/// Reads the file: faults and warnings go to the reader.
+pub fn read_air(r: &Reader<'_>, datum: Datum, setting: &Setting<'_>) -> AirSpec {
     let before = r.errors();
     fields::check(r.again(), keys::ATMOSPHERE);
     if r.errors() > before {
         return AirSpec::default();
     }
     let column = r.maybe_table("physics").and_then(|t| tell(&t, "", Column::new(&column_of(&t, datum))));
-    let (look, by_wavelength) = look_of(r, datum, star).unzip();
+    let (look, by_wavelength) = look_of(r, datum, setting).unzip();
     if let Some(look) = look.as_ref().filter(|_| r.errors() == before) {
         plausible::suspicions(r.node, look, column.as_ref(), datum.gravity_m_s2).into_iter().for_each(|s| r.fault(s));
     }
-    AirSpec { column, look, by_wavelength }
+    AirSpec { column, look, by_wavelength, fog: fog::read(r, datum) }
 }
 
 /// Turns range errors into faults; `table` is where their fields are, with a point behind it.
@@ -96,7 +114,7 @@ fn column_of(r: &Reader<'_>, datum: Datum) -> ColumnSpec {
 }
 
 /// The look. What each model cannot do without is asked for here.
-fn look_of(r: &Reader<'_>, datum: Datum, star: &Starlight) -> Option<(Air, SpectralMedium)> {
+fn look_of(r: &Reader<'_>, datum: Datum, setting: &Setting<'_>) -> Option<(Air, SpectralMedium)> {
     let before = r.errors();
     let word = r.node.get("model").and_then(|e| e.value.text()).unwrap_or("physical");
     if word == "none" {
@@ -111,10 +129,10 @@ fn look_of(r: &Reader<'_>, datum: Datum, star: &Starlight) -> Option<(Air, Spect
     let wavelengths_m = r.has("wavelengths_nm").then(|| r.numbers("wavelengths_nm", ANY).map(|nm| nm * NM));
     let wavelengths_m = wavelengths_m.unwrap_or(SpectralMedium::WAVELENGTHS_M);
     let layers = layers::read(r, datum, Channels { wavelengths_m });
-    let model = model_of(r, word);
+    let model = model_of(r, word, setting);
     let by_wavelength = SpectralMedium { bottom_radius_m: datum.radius_m, top_altitude_m, ground_albedo, wavelengths_m, layers };
     let spectral = word == "physical" && r.node.get("spectrum").and_then(|e| e.value.text()) == Some("spectral");
-    let drawn = tell(r, "", by_wavelength.draw(spectral, star));
+    let drawn = tell(r, "", by_wavelength.draw(spectral, setting.star));
     if r.errors() > before {
         return None;
     }
@@ -123,15 +141,76 @@ fn look_of(r: &Reader<'_>, datum: Datum, star: &Starlight) -> Option<(Air, Spect
 }
 
 /// The model that a word names, with the settings in the table of that name.
-fn model_of(r: &Reader<'_>, word: &str) -> Option<Model> {
+fn model_of(r: &Reader<'_>, word: &str, setting: &Setting<'_>) -> Option<Model> {
     let table = r.node.get(word).map(|e| &e.value).filter(|n| matches!(n.data, Data::Table(_)));
     let mut settings = table.map_or_else(|| serde_json::json!({}), Node::json);
     settings["model"] = word.into();
+    if let Some(settings) = settings.as_object_mut() {
+        // Names of files: the pictures take their places below.
+        settings.retain(|key, _| !keys::MAPS.contains(&key.as_str()));
+    }
     match serde_json::from_value::<Model>(settings) {
-        Ok(model) => Some(model),
+        Ok(mut model) => {
+            if let Model::Gradient(gradient) = &mut model {
+                painted(table, gradient, setting, r)?;
+            }
+            let errors = errors_of(&model);
+            tell(r, &format!("{word}."), if errors.is_empty() { Ok(model) } else { Err(errors) })
+        }
         Err(e) => {
             r.wrong(word, format!("[{word}]: {e}: expected the settings of the model"));
             None
         }
     }
+}
+
+/// What of a model's settings is out of range, by the keys of its own table.
+fn errors_of(model: &Model) -> Vec<RangeError> {
+    match model {
+        Model::Physical(_) => Vec::new(),
+        Model::Thickness(m) => m.validate(),
+        Model::LimbTable(m) => m.validate(),
+        Model::ViewTable(m) => m.validate(),
+        Model::Gradient(m) => m.validate(),
+    }
+}
+
+/// The pictures that the table `[gradient]` names; what it leaves out is the model's own.
+fn painted(table: Option<&Node>, gradient: &mut Gradient, setting: &Setting<'_>, r: &Reader<'_>) -> Option<()> {
+    let mut whole = Some(());
+    for (key, map) in keys::MAPS.into_iter().zip([&mut gradient.shell_map, &mut gradient.ground_map]) {
+        let Some(entry) = table.and_then(|t| t.get(key)) else { continue };
+        let name = entry.value.text().unwrap_or_default();
+        let relative = format!("{}/{name}", setting.folder);
+        let fault = match setting.overlay.find(&relative).filter(|_| !name.contains("..")) {
+            None => Fault::at(&entry.value.at, format!("`gradient.{key}` = \"{name}\": expected a PNG beside this file"))
+                .help(Some(format!("looked for {relative} in the assets and in the mods"))),
+            Some(path) => match read_bytes(&path, DATA_MAX).and_then(|bytes| painting(&bytes).map_err(|what| Fault::file(&path, what))) {
+                Ok(painted) => {
+                    *map = painted;
+                    continue;
+                }
+                Err(fault) => fault,
+            },
+        };
+        r.fault(fault);
+        whole = None;
+    }
+    whole
+}
+
+/// Decodes an 8-bit PNG with or without alpha.
+fn painting(bytes: &[u8]) -> Result<ColourMap, String> {
+    let expected = "expected an RGB or RGBA picture, PNG with 8 bits a channel";
+    let bad = |e: png::DecodingError| format!("not a PNG that can be read: {e}; {expected}");
+    let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().map_err(bad)?;
+    let size = reader.output_buffer_size().filter(|n| *n <= 1 << 20).ok_or_else(|| format!("the picture is too large: {expected}"))?;
+    let mut pixels = vec![0; size];
+    let info = reader.next_frame(&mut pixels).map_err(bad)?;
+    let rgba = match (info.color_type, info.bit_depth) {
+        (png::ColorType::Rgba, png::BitDepth::Eight) => pixels,
+        (png::ColorType::Rgb, png::BitDepth::Eight) => pixels.chunks_exact(3).flat_map(|p| [p[0], p[1], p[2], 255]).collect(),
+        other => return Err(format!("the picture is {other:?}: {expected}")),
+    };
+    Ok(ColourMap { size: [info.width, info.height], rgba })
 }

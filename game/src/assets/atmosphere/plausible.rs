@@ -2,7 +2,8 @@
 //! line that is suspected, with the figure that is odd and what it would be on a world like ours.
 
 use crate::assets::fault::Fault;
-use crate::assets::tree::Node;
+use crate::assets::tree::{Data, Node};
+use engine::air::optics::BOLTZMANN_J_K;
 use engine::air::{Air, Column, Layer, Phase};
 use engine::space::relative::narrow;
 use glam::DVec3;
@@ -15,6 +16,8 @@ const THICK_DEPTH: f64 = 5.0;
 const EDGE_DEPTH: f64 = 0.01;
 /// Factor between a molecular layer's scale height and that of the gas that drags.
 const SCALE_FACTOR: f64 = 1.5;
+/// Factor between the density of a gas that is seen and that of the one that drags.
+const AMOUNT_FACTOR: f64 = 1.25;
 /// Steps of the sums over altitude.
 const STEPS: u32 = 400;
 
@@ -51,6 +54,7 @@ pub fn suspicions(tree: &Node, look: &Air, column: Option<&Column>, gravity_m_s2
             );
         }
         if let Some(column) = column {
+            wrong_amount(tree, i, column, &mut tell);
             wrong_scale(layer, i, column, gravity_m_s2, &mut tell);
         }
     }
@@ -89,6 +93,30 @@ fn hard_edge(layer: &Layer, i: usize, radius_m: f64, top_m: f64, tell: &mut impl
                 100.0 * density
             ),
             "raise the top, or lower the scale height: an exponential layer wants a top of about 12 scale heights",
+        );
+    }
+}
+
+/// A gas of another density than the one that drags.
+fn wrong_amount(tree: &Node, i: usize, column: &Column, tell: &mut impl FnMut(&str, String, &str)) {
+    let Some(Data::Array(layers)) = tree.get("layers").map(|e| &e.value.data) else { return };
+    let Some(gas) = layers.get(i).and_then(|l| l.get("gas")) else { return };
+    let number = |key: &str| match gas.value.get(key).map(|e| &e.value.data) {
+        Some(Data::Number(x)) => Some(*x),
+        _ => None,
+    };
+    let low = column.at(0.0);
+    let (key, seen) = match (number("molecular_density_per_m3"), number("pressure_pa"), number("temperature_k")) {
+        (Some(n), ..) => ("molecular_density_per_m3", n),
+        (None, Some(p), Some(t)) => ("pressure_pa", p / (BOLTZMANN_J_K * t)),
+        _ => return,
+    };
+    let drags = low.pressure_pa / (BOLTZMANN_J_K * low.temperature_k);
+    if drags > 0.0 && !(1.0 / AMOUNT_FACTOR..=AMOUNT_FACTOR).contains(&(seen / drags)) {
+        tell(
+            &format!("layers[{i}].gas.{key}"),
+            format!("{seen:.2e} molecules per m³ are seen, {drags:.2e} drag: p ≠ ρ R T / M for one of them"),
+            "molecules and the gas that drags are one: give both the same pressure and temperature",
         );
     }
 }

@@ -1,6 +1,7 @@
 //! The loop of the window: events in, ticks, one frame out. [`asked`] is what menus and view controls ask for,
-//! [`drawing`] the frame, [`watch`] the hot reload.
+//! [`drawing`] the frame, [`watch`] the hot reload, [`air`] the editor of airs.
 
+mod air;
 mod asked;
 mod drawing;
 mod watch;
@@ -24,6 +25,7 @@ use crate::view::CameraMode;
 use crate::world::World;
 use crate::world::eclipse::almanac::Event;
 use crate::world::readout::Situation;
+use crate::world::system::System;
 use engine::gpu::BackendChoice;
 use engine::render::{RenderError, Renderer, RendererOptions};
 use engine::space::relative::narrow;
@@ -69,6 +71,8 @@ pub struct App {
     /// The paths of the flight's bodies, being worked out.
     ahead: Option<Ahead>,
     watch: watch::Watch,
+    /// The flight's system with the edited air: drawn, never flown.
+    trial: Option<Arc<System>>,
     clicked: Vec<Action>,
     clock: Clock,
     last: Instant,
@@ -118,6 +122,7 @@ impl App {
             flight: None,
             ahead: None,
             watch: watch::Watch::default(),
+            trial: None,
             clicked: Vec::new(),
             clock: Clock::default(),
             last: Instant::now(),
@@ -183,6 +188,7 @@ impl App {
             return;
         }
         self.hear_watch();
+        self.hear_air();
         self.hear_eclipses();
         self.hud.paths_ahead = self.ahead.as_mut().and_then(Ahead::poll);
         self.set_focus();
@@ -352,7 +358,7 @@ impl App {
 
     fn pointer(&mut self, event: &WindowEvent, kept: bool) {
         let over_panel = self.canvas.as_ref().is_some_and(|c| c.ctx.egui_wants_pointer_input());
-        let view = matches!(self.hud.screen, Screen::Flight | Screen::Photo | Screen::Crash);
+        let view = matches!(self.hud.screen, Screen::Flight | Screen::Photo | Screen::Air | Screen::Crash);
         match event {
             WindowEvent::MouseInput { state, button, .. } => {
                 let down = *state == ElementState::Pressed;

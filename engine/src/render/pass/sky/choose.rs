@@ -4,7 +4,7 @@ use super::model_name;
 use crate::air::Air;
 use crate::render::pass::smooth_body::radius_px;
 use crate::scene::gpu_data::MAX_BODIES;
-use crate::scene::{Body, Snapshot};
+use crate::scene::{Body, Snapshot, Surface};
 use crate::space::relative::narrow;
 use glam::Vec3;
 
@@ -86,7 +86,9 @@ fn choice(scene: &Snapshot, index: u32, body: &Body, air: &Air, slot: Option<u32
     let size = scene.camera.size_px;
     let mut out =
         Choice { body: index, id: body.id, model: model_name(&air.model), rect: Rect::default(), reason: String::new(), skip: None };
-    let px = radius_px(scene, body);
+    // Of a shell that is all there is, its own disc counts.
+    let shell = if matches!(body.surface, Surface::Nothing) { narrow(air.medium.top_altitude_m) / body.radius_m + 1.0 } else { 1.0 };
+    let px = radius_px(scene, body) * shell;
     if slot.is_none() {
         out.skip = Some("more airs than slots for their tables, and this one is the farthest".to_owned());
     } else if px < AIR_BELOW_PX {

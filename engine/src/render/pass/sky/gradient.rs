@@ -78,7 +78,7 @@ impl Painter for Gradient {
 }
 
 /// The model's numbers, as the head of the shader says.
-pub fn settings(model: &Settings) -> SkySettings {
+fn settings(model: &Settings) -> SkySettings {
     let mut rows = no_settings();
     rows[0] = [model.stretch, model.stretch + model.fade_stretch, narrow(model.visibility_m), model.transparency];
     rows[1] = [model.brightness * core::f32::consts::FRAC_1_PI, model.opacity, 0.0, 0.0];
@@ -86,7 +86,7 @@ pub fn settings(model: &Settings) -> SkySettings {
 }
 
 /// A map as the shader reads it: linear RGBA. An empty one is one black texel.
-pub fn upload(gpu: &Gpu, map: &ColourMap) -> Texture {
+fn upload(gpu: &Gpu, map: &ColourMap) -> Texture {
     let size = map.size.map(|n| n.max(1));
     let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
     let texture = Texture::new(&gpu.device, "gradient map", size, wgpu::TextureFormat::Rgba16Float, usage);

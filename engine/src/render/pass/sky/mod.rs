@@ -17,11 +17,12 @@ pub mod view_table;
 
 use crate::air::{Air, Model};
 use crate::gpu::buffer::Uniform;
+use crate::gpu::texture::Texture;
 use crate::gpu::{Gpu, ShaderLibrary};
 use crate::render::RenderError;
 use crate::render::pipeline::{PipelineKind, depth_entry, texture_entry, uniform_entry};
 use crate::render::report::AirReport;
-use crate::render::shared::{FrameContext, Shared};
+use crate::render::shared::{FrameContext, Mirror, Shared};
 use crate::render::targets::HDR;
 use crate::scene::gpu_data::{MAX_AIRS, SkySettings, SkyUniform};
 use crate::scene::{Body, Snapshot};
@@ -58,6 +59,19 @@ pub trait Painter: Send {
     /// Makes the tables that [`Painter::plan`] found missing.
     fn bake(&mut self, gpu: &Gpu, pass: &mut wgpu::ComputePass<'_>) {
         let _ = (gpu, pass);
+    }
+    /// Whether it says itself what reaches the ground of its bodies.
+    fn lights_ground(&self) -> bool {
+        false
+    }
+    /// Says it: writes transmittance and irradiance of a body's air, each one layer, as `shaders/lib/air.wgsl` reads them.
+    fn light_ground(&self, gpu: &Gpu, pass: &mut wgpu::ComputePass<'_>, id: u16, into: [&wgpu::TextureView; 2]) {
+        let _ = (gpu, pass, id, into);
+    }
+    /// The sky that a body's water mirrors.
+    fn mirror(&self, id: u16) -> Option<&Mirror> {
+        let _ = id;
+        None
     }
 }
 
@@ -165,6 +179,7 @@ pub struct Sky {
     painters: Vec<Box<dyn Painter>>,
     uniforms: Vec<Uniform<SkyUniform>>,
     chosen: Vec<Choice>,
+    no_mirror: Mirror,
     /// The last picture through air is in `aerial`, else in `opaque`.
     in_aerial: bool,
 }
@@ -176,7 +191,7 @@ impl Sky {
         let parts = Parts { gpu, shaders, shared, picture: &picture };
         let painters = PAINTERS.iter().map(|make| make(&parts)).collect::<Result<Vec<_>, _>>()?;
         let uniforms = (0..MAX_AIRS).map(|_| Uniform::new(&gpu.device, "Sky", wgpu::BufferUsages::empty())).collect();
-        Ok(Self { steps: STEPS, picture, painters, uniforms, chosen: Vec::new(), in_aerial: false })
+        Ok(Self { steps: STEPS, picture, painters, uniforms, chosen: Vec::new(), no_mirror: Mirror::none(gpu), in_aerial: false })
     }
 
     /// Chooses what to draw and why the rest is not; then tells why no model has tables of its own to make.
@@ -209,6 +224,39 @@ impl Sky {
         for painter in &mut self.painters {
             painter.bake(gpu, &mut pass);
         }
+    }
+
+    /// Why no ground has to be told anew what lights it.
+    pub fn skip_daylight(&self, f: &FrameContext<'_>) -> Option<String> {
+        if self.by_own_light(f.scene).next().is_none() {
+            return Some("no model in view lights the ground by tables of its own".to_owned());
+        }
+        let ran = |name| f.report.pass(name).is_some_and(|p| p.ran);
+        (!ran("air_tables") && !ran("sky_tables")).then(|| "no table in view has changed since the ground was told".to_owned())
+    }
+
+    /// Puts what the models in view say of it in the place of what the air tables say: `tables` are those.
+    pub fn record_daylight(&self, f: &mut FrameContext<'_>, tables: [&Texture; 2]) {
+        let (gpu, scene, slots) = (f.gpu, f.scene, f.air_slots.clone());
+        let mut pass = f.compute("sky_daylight");
+        for (choice, painter) in self.by_own_light(scene) {
+            let Some(slot) = slots.get(choice.body as usize).copied().flatten() else { continue };
+            let [sun, sky] = tables.map(|t| t.layer_view(slot));
+            painter.light_ground(gpu, &mut pass, choice.id, [&sun, &sky]);
+        }
+    }
+
+    fn by_own_light<'a, 's>(&'a self, scene: &'s Snapshot) -> impl Iterator<Item = (&'a Choice, &'a dyn Painter)> + use<'a, 's> {
+        self.chosen.iter().filter_map(move |choice| {
+            let (_, air) = air_of(scene, choice)?;
+            let painter = self.painters.get(painter_of(&air.model)).filter(|p| p.lights_ground())?;
+            Some((choice, &**painter))
+        })
+    }
+
+    /// The sky that water mirrors: that of the nearest body in view whose model keeps one in a table.
+    pub fn mirror(&self, scene: &Snapshot) -> &Mirror {
+        self.by_own_light(scene).filter_map(|(choice, painter)| painter.mirror(choice.id)).last().unwrap_or(&self.no_mirror)
     }
 
     /// Why the scene does not need it.

@@ -1,5 +1,6 @@
-//! How the model `view_table` draws: `shaders/lib/view_table.wgsl`, with two tables for every body, baked when its settings or its medium
-//! change: optical depth in full floats, then the 3-D table of scattering, which asks it.
+//! How the model `view_table` draws: `shaders/lib/view_table.wgsl`, with three tables for every body, baked when its settings or its medium
+//! change: optical depth in full floats, the 3-D table of scattering, which asks it, and the ambient light, which asks that. It also says what
+//! lights the ground, and what its water mirrors.
 //!
 //! Not here: what the tables hold ([`crate::air::model::view_table`]).
 
@@ -9,9 +10,10 @@ use crate::air::model::view_table::Split;
 use crate::air::{Air, Classes, Medium, Model};
 use crate::gpu::Gpu;
 use crate::gpu::buffer::Uniform;
-use crate::gpu::texture::Texture;
+use crate::gpu::texture::{Texture, linear_sampler};
 use crate::render::RenderError;
-use crate::render::pipeline::{compute_pipeline, loaded_entry, texture_entry, uniform_entry};
+use crate::render::pipeline::{compute_pipeline, loaded_entry, sampler_entry, texture_entry, uniform_entry};
+use crate::render::shared::Mirror;
 use crate::render::targets::HDR;
 use crate::scene::Body;
 use crate::scene::gpu_data::{AirUniform, MEDIA_COLUMNS, MEDIA_ROWS, SkySettings, ViewTableUniform, media_rows};
@@ -20,6 +22,8 @@ use wgpu::{BindGroupEntry, BindGroupLayoutEntry, BindingResource, ShaderStages, 
 
 /// Bodies whose tables are kept while others are drawn: a full table has 128 MiB.
 const KEPT: usize = 4;
+/// Texels of the transmittance table that [`Painter::light_ground`] writes; irradiance has fewer.
+const SUNLIGHT_SIZE: [u32; 2] = [256, 64];
 
 const fn storage(binding: u32, format: TextureFormat, view_dimension: TextureViewDimension) -> BindGroupLayoutEntry {
     BindGroupLayoutEntry {
@@ -30,33 +34,77 @@ const fn storage(binding: u32, format: TextureFormat, view_dimension: TextureVie
     }
 }
 
+/// A bake: its pipeline and the layout of its one group.
+struct Bake {
+    layout: wgpu::BindGroupLayout,
+    pipeline: wgpu::ComputePipeline,
+}
+
+impl Bake {
+    fn new(parts: &Parts<'_>, file: &str, entries: &[BindGroupLayoutEntry]) -> Result<Self, RenderError> {
+        let Parts { gpu, shaders, .. } = parts;
+        let entries = [&[uniform_entry(0), uniform_entry(1)], entries].concat();
+        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("view bake"), entries: &entries });
+        let pipeline = compute_pipeline(gpu, file, &shaders.load(&gpu.device, file)?, &[&layout], "bake");
+        Ok(Self { layout, pipeline })
+    }
+
+    fn run(&self, gpu: &Gpu, pass: &mut wgpu::ComputePass<'_>, tables: &Tables, own: &[(u32, BindingResource<'_>)], groups: [u32; 3]) {
+        let mut entries = vec![
+            BindGroupEntry { binding: 0, resource: tables.air.buffer.as_entire_binding() },
+            BindGroupEntry { binding: 1, resource: tables.mirror.uniform.as_entire_binding() },
+        ];
+        entries.extend(own.iter().map(|(binding, resource)| BindGroupEntry { binding: *binding, resource: resource.clone() }));
+        let group =
+            gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("view bake"), layout: &self.layout, entries: &entries });
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &group, &[]);
+        pass.dispatch_workgroups(groups[0], groups[1], groups[2]);
+    }
+}
+
 /// Compiles it.
 pub fn make(parts: &Parts<'_>) -> Result<Box<dyn Painter>, RenderError> {
-    let Parts { gpu, shaders, .. } = parts;
-    let own = [uniform_entry(0), texture_entry(1, TextureViewDimension::D3), loaded_entry(2, TextureViewDimension::D2)];
+    let (flat, array, solid) = (TextureViewDimension::D2, TextureViewDimension::D2Array, TextureViewDimension::D3);
+    let own = [uniform_entry(0), texture_entry(1, solid), loaded_entry(2, flat)];
     let kind = PainterKind::new(parts, "pass/sky_view_table.wgsl", &own)?;
-    let (flat, array) = (TextureViewDimension::D2, TextureViewDimension::D2Array);
-    // The table of depths reads none.
-    let depth = [uniform_entry(0), uniform_entry(1), storage(2, TextureFormat::Rgba32Float, flat), loaded_entry(4, array)];
-    let scatter =
-        [uniform_entry(0), uniform_entry(1), storage(2, HDR, TextureViewDimension::D3), loaded_entry(3, flat), loaded_entry(4, array)];
-    let layouts = [&depth[..], &scatter[..]]
-        .map(|entries| gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("view bake"), entries }));
-    let bake = |layout: &wgpu::BindGroupLayout, file: &str| -> Result<_, RenderError> {
-        Ok(compute_pipeline(gpu, file, &shaders.load(&gpu.device, file)?, &[layout], "bake"))
+    let filtering = wgpu::SamplerBindingType::Filtering;
+    let depth = [storage(2, TextureFormat::Rgba32Float, flat), loaded_entry(4, array)];
+    let scatter = [storage(2, HDR, solid), loaded_entry(3, flat), loaded_entry(4, array)];
+    let ambient = [storage(2, HDR, flat), texture_entry(3, solid), loaded_entry(4, array), sampler_entry(5, filtering)];
+    let daylight =
+        [storage(2, HDR, flat), storage(3, HDR, flat), loaded_entry(4, flat), texture_entry(5, flat), sampler_entry(6, filtering)];
+    let small = Settings {
+        height_size: 1,
+        view_size: 1,
+        sun_size: 1,
+        depth_height_size: 1,
+        depth_angle_size: 1,
+        ambient_size: 1,
+        ..Settings::default()
     };
-    let pipelines = [bake(&layouts[0], "pass/view_depth.wgsl")?, bake(&layouts[1], "pass/view_scatter.wgsl")?];
-    let small = Settings { height_size: 1, view_size: 1, sun_size: 1, depth_height_size: 1, depth_angle_size: 1, ..Settings::default() };
     let vacuum = Medium { bottom_radius_m: 1.0, top_altitude_m: 1.0, ground_albedo: glam::Vec3::ZERO, layers: Vec::new() };
-    let none = Tables::empty(gpu, &kind, &small, &vacuum);
-    Ok(Box::new(ViewTable { kind, layouts, pipelines, none, tables: BTreeMap::new(), clock: 0 }))
+    Ok(Box::new(ViewTable {
+        none: Tables::empty(parts.gpu, &kind, 0, &small, &vacuum),
+        kind,
+        depth: Bake::new(parts, "pass/view_depth.wgsl", &depth)?,
+        scatter: Bake::new(parts, "pass/view_scatter.wgsl", &scatter)?,
+        ambient: Bake::new(parts, "pass/view_ambient.wgsl", &ambient)?,
+        daylight: Bake::new(parts, "pass/view_daylight.wgsl", &daylight)?,
+        linear: linear_sampler(&parts.gpu.device, "view tables", false),
+        tables: BTreeMap::new(),
+        clock: 0,
+    }))
 }
 
 /// The painter.
 struct ViewTable {
     kind: PainterKind,
-    layouts: [wgpu::BindGroupLayout; 2],
-    pipelines: [wgpu::ComputePipeline; 2],
+    depth: Bake,
+    scatter: Bake,
+    ambient: Bake,
+    daylight: Bake,
+    linear: wgpu::Sampler,
     none: Tables,
     tables: BTreeMap<u16, Tables>,
     clock: u64,
@@ -66,35 +114,40 @@ struct ViewTable {
 struct Tables {
     settings: Settings,
     medium: Medium,
-    uniform: Uniform<ViewTableUniform>,
+    air: Uniform<AirUniform>,
+    /// The medium as a table, where it is one: a layer of `media` of `shaders/lib/medium.wgsl`.
+    media: wgpu::TextureView,
     depth: Texture,
-    scatter: wgpu::TextureView,
+    ambient: Texture,
+    /// The 3-D table and the uniform.
+    mirror: Mirror,
     group: wgpu::BindGroup,
     baked: bool,
     used: u64,
 }
 
 impl Tables {
-    fn empty(gpu: &Gpu, kind: &PainterKind, settings: &Settings, medium: &Medium) -> Self {
+    #[allow(clippy::cast_possible_truncation)]
+    fn empty(gpu: &Gpu, kind: &PainterKind, id: u16, settings: &Settings, medium: &Medium) -> Self {
+        let d = &gpu.device;
         let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::STORAGE_BINDING;
         let size = [settings.depth_angle_size, settings.depth_height_size];
-        let depth = Texture::new(&gpu.device, "view table: depth", size, TextureFormat::Rgba32Float, usage);
-        let scatter = gpu
-            .device
-            .create_texture(&wgpu::TextureDescriptor {
-                label: Some("view table: scattering"),
-                size: wgpu::Extent3d { width: settings.view_size, height: settings.sun_size, depth_or_array_layers: settings.height_size },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D3,
-                format: HDR,
-                usage,
-                view_formats: &[],
-            })
-            .create_view(&wgpu::TextureViewDescriptor::default());
-        let uniform = Uniform::new(&gpu.device, "ViewTable", wgpu::BufferUsages::empty());
-        uniform.write(&gpu.queue, &ViewTableUniform::new(settings, &Split::new(medium)));
-        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        let depth = Texture::new(d, "view table: depth", size, TextureFormat::Rgba32Float, usage);
+        let size = [settings.view_size, settings.sun_size, settings.height_size];
+        let scatter = Texture::volume(d, "view table: scattering", size, HDR, usage).view;
+        let ambient = Texture::new(d, "view table: ambient", [settings.ambient_size, 1], HDR, usage);
+        let classes = Classes::of(medium);
+        let air = Uniform::new(d, "view table: Air", wgpu::BufferUsages::empty());
+        air.write(&gpu.queue, &AirUniform::new(medium, &classes));
+        let size = [MEDIA_COLUMNS as u32, MEDIA_ROWS as u32];
+        let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
+        let media = Texture::new(d, "view table: medium", size, TextureFormat::Rgba32Float, usage);
+        if !classes.direct {
+            media.write(&gpu.queue, 0, 0, bytemuck::cast_slice(&media_rows(medium, &classes)));
+        }
+        let uniform = Uniform::new(d, "ViewTable", wgpu::BufferUsages::empty());
+        uniform.write(&gpu.queue, &ViewTableUniform::new(id, settings, &Split::new(medium)));
+        let group = d.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("group 3: view_table"),
             layout: &kind.own_layout,
             entries: &[
@@ -103,7 +156,18 @@ impl Tables {
                 BindGroupEntry { binding: 2, resource: BindingResource::TextureView(&depth.view) },
             ],
         });
-        Self { settings: settings.clone(), medium: medium.clone(), uniform, depth, scatter, group, baked: false, used: 0 }
+        Self {
+            settings: settings.clone(),
+            medium: medium.clone(),
+            air,
+            media: media.array_view(),
+            depth,
+            ambient,
+            mirror: Mirror { scatter, uniform: uniform.buffer },
+            group,
+            baked: false,
+            used: 0,
+        }
     }
 }
 
@@ -129,7 +193,7 @@ impl Painter for ViewTable {
                 None => {
                     // The old ones go before the new ones are made: both may not fit.
                     self.tables.remove(id);
-                    let fresh = Tables { used: self.clock, ..Tables::empty(gpu, &self.kind, model, &air.medium) };
+                    let fresh = Tables { used: self.clock, ..Tables::empty(gpu, &self.kind, *id, model, &air.medium) };
                     self.tables.insert(*id, fresh);
                 }
             }
@@ -143,46 +207,35 @@ impl Painter for ViewTable {
         self.tables.values().filter(|t| !t.baked).count()
     }
     fn bake(&mut self, gpu: &Gpu, pass: &mut wgpu::ComputePass<'_>) {
+        use BindingResource::{Sampler, TextureView};
         for tables in self.tables.values_mut().filter(|t| !t.baked) {
             tables.baked = true;
-            let classes = Classes::of(&tables.medium);
-            let air = Uniform::new(&gpu.device, "view bake: Air", wgpu::BufferUsages::empty());
-            air.write(&gpu.queue, &AirUniform::new(&tables.medium, &classes));
-            let media = media(gpu, &tables.medium, &classes).array_view();
-            let s = &tables.settings;
-            let sizes = [[s.depth_angle_size, s.depth_height_size, 1], [s.view_size, s.sun_size, s.height_size]];
-            for (i, output) in [&tables.depth.view, &tables.scatter].into_iter().enumerate() {
-                let entry = |binding, resource| BindGroupEntry { binding, resource };
-                let mut entries = vec![
-                    entry(0, air.buffer.as_entire_binding()),
-                    entry(1, tables.uniform.buffer.as_entire_binding()),
-                    entry(2, BindingResource::TextureView(output)),
-                    entry(4, BindingResource::TextureView(&media)),
-                ];
-                if i > 0 {
-                    entries.push(entry(3, BindingResource::TextureView(&tables.depth.view)));
-                }
-                let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-                    label: Some("view bake"),
-                    layout: &self.layouts[i],
-                    entries: &entries,
-                });
-                pass.set_pipeline(&self.pipelines[i]);
-                pass.set_bind_group(0, &group, &[]);
-                pass.dispatch_workgroups(sizes[i][0].div_ceil(8), sizes[i][1].div_ceil(8), sizes[i][2]);
-            }
+            let (s, media) = (tables.settings.clone(), TextureView(&tables.media));
+            let depth = [(2, TextureView(&tables.depth.view)), (4, media.clone())];
+            self.depth.run(gpu, pass, tables, &depth, [s.depth_angle_size.div_ceil(8), s.depth_height_size.div_ceil(8), 1]);
+            let scatter = [(2, TextureView(&tables.mirror.scatter)), (3, TextureView(&tables.depth.view)), (4, media.clone())];
+            self.scatter.run(gpu, pass, tables, &scatter, [s.view_size.div_ceil(8), s.sun_size.div_ceil(8), s.height_size]);
+            let ambient =
+                [(2, TextureView(&tables.ambient.view)), (3, TextureView(&tables.mirror.scatter)), (4, media), (5, Sampler(&self.linear))];
+            self.ambient.run(gpu, pass, tables, &ambient, [s.ambient_size, 1, 1]);
         }
     }
-}
-
-/// The medium as a table, where it is one: one layer of `media` of `shaders/lib/medium.wgsl`.
-#[allow(clippy::cast_possible_truncation)]
-fn media(gpu: &Gpu, medium: &Medium, classes: &Classes) -> Texture {
-    let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
-    let size = [MEDIA_COLUMNS as u32, MEDIA_ROWS as u32];
-    let texture = Texture::new(&gpu.device, "view bake: medium", size, TextureFormat::Rgba32Float, usage);
-    if !classes.direct {
-        texture.write(&gpu.queue, 0, 0, bytemuck::cast_slice(&media_rows(medium, classes)));
+    fn lights_ground(&self) -> bool {
+        true
     }
-    texture
+    fn light_ground(&self, gpu: &Gpu, pass: &mut wgpu::ComputePass<'_>, id: u16, into: [&wgpu::TextureView; 2]) {
+        use BindingResource::{Sampler, TextureView};
+        let Some(tables) = self.tables.get(&id) else { return };
+        let own = [
+            (2, TextureView(into[0])),
+            (3, TextureView(into[1])),
+            (4, TextureView(&tables.depth.view)),
+            (5, TextureView(&tables.ambient.view)),
+            (6, Sampler(&self.linear)),
+        ];
+        self.daylight.run(gpu, pass, tables, &own, [SUNLIGHT_SIZE[0].div_ceil(8), SUNLIGHT_SIZE[1].div_ceil(8), 1]);
+    }
+    fn mirror(&self, id: u16) -> Option<&Mirror> {
+        self.tables.get(&id).map(|t| &t.mirror)
+    }
 }

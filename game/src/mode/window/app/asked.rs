@@ -67,6 +67,9 @@ impl App {
                 self.hud.screen = Screen::Photo;
             }
             C::Photo if screen == Screen::Photo => self.hud.screen = Screen::Flight,
+            C::EditAir if matches!(screen, Screen::Flight | Screen::Pause | Screen::Photo) => self.edit_air(),
+            C::EditAir if screen == Screen::Air => self.hud.screen = Screen::Flight,
+            C::HideHud if screen == Screen::Air => self.hud.air.hidden = !self.hud.air.hidden,
             C::HideHud if screen == Screen::Photo => self.hud.photo.panel = !self.hud.photo.panel,
             C::HideHud => self.hud.hidden = !self.hud.hidden,
             C::Camera => self.request(Request::NextCamera),
@@ -110,6 +113,8 @@ impl App {
                 let text = self.save_picture().unwrap_or_else(|e| format!("No picture was saved: {e}"));
                 self.hud.notice(text);
             }
+            Request::EditAir => self.edit_air(),
+            Request::SaveAir => self.save_air(),
             Request::NextCamera => {
                 if let Some(flight) = &mut self.flight {
                     let name = flight.next_camera();

@@ -32,12 +32,19 @@ impl Still {
 }
 
 impl App {
-    /// The World that is drawn: the flight's own, or a copy with the clock moved, or a pose before the crash.
+    /// The World that is drawn: the flight's own, or a copy: with the clock moved, with an edited air, at a pose before the crash.
     pub(super) fn shown(&self) -> Option<World> {
         let flight = self.flight.as_ref()?;
         let world = &flight.session.world;
         match self.hud.screen {
             Screen::Photo if self.hud.photo.hours != 0.0 => Some(photo::moved_clock(world, self.hud.photo.hours)),
+            Screen::Air => {
+                let mut copy = photo::moved_clock(world, self.hud.air.hours);
+                if let Some(trial) = &self.trial {
+                    copy.system = trial.clone();
+                }
+                Some(copy)
+            }
             Screen::Crash if self.hud.crash.back_s > 0.0 => {
                 world.ship.ground.recorder.at(self.hud.crash.back_s).map(|pose| photo::posed(world, &pose))
             }

@@ -14,6 +14,8 @@ use std::sync::Arc;
 pub struct Watch {
     reloader: Option<Reloader>,
     reading: Option<Job<Result<Arc<System>, AssetErrors>>>,
+    /// A file is broken: all of them are read again.
+    broken: bool,
     /// The files tell of other bodies than the flight has: the next flight is to read them.
     pub stale: bool,
 }
@@ -42,6 +44,18 @@ impl App {
         }
     }
 
+    /// Watches folders that are new, too, and takes over what is in them already.
+    pub(super) fn watch_anew(&mut self) {
+        let Some(flight) = &self.flight else { return };
+        let system = flight.session.world.system.clone();
+        match Reloader::watch(&self.opening.assets, &system.key) {
+            Ok(reloader) => self.watch.reloader = Some(reloader),
+            Err(e) => tracing::warn!("changed files will not be noticed: {e}"),
+        }
+        let read = self.opening.assets.airs(&system);
+        self.take_over(read);
+    }
+
     /// Takes over what changed.
     pub(super) fn hear_watch(&mut self) {
         let Some(reloader) = &self.watch.reloader else { return };
@@ -52,19 +66,26 @@ impl App {
         };
         self.watch.reading = None;
         // A file that was saved again while it was read is read again, and only then believed.
-        let Some(flight) = &mut self.flight else { return };
-        let read = match reloader.changed() {
-            Some(Change::All) => {
+        let Some(flight) = &self.flight else { return };
+        let read = match (reloader.changed(), read) {
+            (None, None) => return,
+            (None, Some(read)) => read,
+            // A few milliseconds: read at once, to be seen in this frame.
+            (Some(Change::Airs), None) if !self.watch.stale && !self.watch.broken => self.opening.assets.airs(&flight.session.world.system),
+            (Some(_), _) => {
                 let (assets, key) = (self.opening.assets.clone(), reloader.key().to_owned());
                 self.watch.reading = Some(Job::spawn(move |progress| assets.system(&key, progress)));
                 return;
             }
-            // A few milliseconds: read at once, to be seen in this frame. While bodies wait for the next flight, the airs do, too.
-            Some(Change::Airs) if !self.watch.stale => Some(self.opening.assets.airs(&flight.session.world.system)),
-            _ => read,
         };
+        self.take_over(read);
+    }
+
+    fn take_over(&mut self, read: Result<Arc<System>, AssetErrors>) {
+        let Some(flight) = &mut self.flight else { return };
+        self.watch.broken = read.is_err();
         match read {
-            Some(Ok(system)) => {
+            Ok(system) => {
                 self.hud.fault = None;
                 let seen_only = system.hash == flight.session.world.system.hash;
                 if !seen_only {
@@ -78,12 +99,13 @@ impl App {
                     format!("{}: changed files taken over", system.name)
                 });
                 self.hud.warn(&system.warnings);
+                self.trial = None;
+                self.hud.air.changed = true;
                 if !seen_only {
                     self.look_ahead();
                 }
             }
-            Some(Err(errors)) => self.hud.fault = Some(errors.lines()),
-            None => {}
+            Err(errors) => self.hud.fault = Some(errors.lines()),
         }
     }
 }

@@ -30,6 +30,7 @@ fn rock(ground: bool) -> Arc<System> {
         intensity_cd: Vec3::ZERO,
         air: None,
         look: None,
+        fog: Vec::new(),
         relief: ground.then(|| Arc::new(relief)),
         relief_max: 1.0,
     };
