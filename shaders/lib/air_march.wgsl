@@ -42,6 +42,15 @@ fn air_source(
             * air_orders(air, orders, linear, slot, altitude, mu_s, (along.path.slope + s) / (air.shape.x + altitude), along.ray_sun);
 }
 
+// Panels for a stretch: one where little changes on it, `most` on a long one.
+fn air_panels(air: Air, media: texture_2d_array<f32>, slot: i32, path: AirPath, begin: f32, end: f32, most: u32) -> u32 {
+    let low = air_altitude(air, path, begin);
+    let high = air_altitude(air, path, end);
+    let extinction = air_extinction(air, media, slot, min(low, high));
+    let depth = max(max(extinction.x, extinction.y), extinction.z) * (end - begin);
+    return u32(clamp(ceil(max(depth, 40.0 * abs(high - low) / air.shape.y)), 1.0, f32(most)));
+}
+
 // From the path's start to `end` metres further; `count` points on a long stretch. `ray` is the direction of sight, `star` the star's sphere.
 fn air_march(
     air: Air, media: texture_2d_array<f32>, transmittance: texture_2d_array<f32>, orders: texture_3d<f32>, linear: sampler,
@@ -64,7 +73,7 @@ fn air_march(
         let next = air_next_cut(air, path, begin, end, vec4<f32>(night, -1.0, -1.0), shade.cuts);
         let middle = 0.5 * (begin + next);
         let dark = middle > night.x && middle < night.y;
-        let panels = select(most, max(most / 2u, 1u), dark);
+        let panels = air_panels(air, media, slot, path, begin, next, select(most, max(most / 2u, 1u), dark));
         for (var i = 0u; i < panels; i++) {
             let n = air_nodes(air, path, begin, next, i, panels);
             let m0 = air_matter(air, media, slot, n.altitude.x);
