@@ -1,8 +1,8 @@
 //! Malformed assets, one test a case: each must end in a message with the file, the line and what was expected. Also what mods may do.
 //! The real solar system is measured in [`sol`] and [`moons`].
 
-mod optics;
 mod moons;
+mod optics;
 mod sol;
 
 use super::*;
