@@ -45,6 +45,7 @@ fn written(air: &AirUniform) -> String {
         phases,
         v4(air.jumps_low),
         v4(air.jumps_high),
+        v4(air.orders),
     ];
     let mut text = String::new();
     let _ = write!(text, "fn the_air() -> Air {{ return Air({}); }}\n{MAIN}", parts.join(", "));
