@@ -226,3 +226,24 @@ fn the_settings_of_every_model_are_keys_of_its_table() {
         assert_eq!(keys, settings, "{word}");
     }
 }
+
+#[test]
+fn banks_of_fog_are_placed_and_their_faults_told() {
+    let dir = assets();
+    let put_fog = |text: &str| put(dir.path(), AIR_FILE, format!("{AIR}{text}").as_bytes());
+    let bank = "[[fog]]\nlatitude_deg = 90.0\nlongitude_deg = 0.0\naltitude_m = 1000.0\nradius_m = 500.0\n";
+    put_fog(&format!("{bank}thickness = {{ opacity = 2.0, shadow = \"cylinder\" }}\n{bank}"));
+    let system = load_system(dir.path(), &[], "t").unwrap();
+    let fog = &system.body(system.find("rock").unwrap()).fog;
+    assert_eq!(fog.len(), 2);
+    assert!((fog[0].centre_m - 6.001e6 * glam::DVec3::Z).length() < 1e-3, "{}", fog[0].centre_m);
+    assert_eq!(fog[0].air.medium.top_altitude_m, 500.0);
+    let engine::air::Model::Thickness(look) = &fog[0].air.model else { panic!("{:?}", fog[0].air.model) };
+    assert_eq!((look.opacity, look.shadow), (2.0, engine::air::model::thickness::ShadowShape::Cylinder));
+    assert_eq!(fog[1].air.model, engine::air::Model::Thickness(engine::air::model::Thickness::default()));
+    put_fog(&bank.replace("radius_m = 500.0", "radius_m = -5.0\nradus_m = 1.0\nthickness = { opacity = -1.0 }"));
+    let told = load_system(dir.path(), &[], "t").unwrap_err().text();
+    for part in ["radius_m", "radus_m", "opacity"] {
+        assert!(told.contains(part), "{part} in: {told}");
+    }
+}
