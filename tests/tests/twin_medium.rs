@@ -32,22 +32,24 @@ fn written(air: &AirUniform) -> String {
     };
     let p = air.phases;
     let phases = format!("Phases({}, {}, {}, {})", v4(p.g), v4(p.x), v4(p.y), v4(p.z));
-    let parts = [
-        v4(air.shape),
-        v4(air.albedo),
-        m(air.scattering),
-        m(air.extinction),
-        v4(air.inverse_height),
-        v4(air.tent_bottom),
-        v4(air.tent_rise),
-        v4(air.tent_top),
-        v4(air.tent_fall),
-        phases,
-        v4(air.jumps_low),
-        v4(air.jumps_high),
+    let fields = [
+        ("shape", v4(air.shape)),
+        ("albedo", v4(air.albedo)),
+        ("scattering", m(air.scattering)),
+        ("extinction", m(air.extinction)),
+        ("inverse_height", v4(air.inverse_height)),
+        ("tent_bottom", v4(air.tent_bottom)),
+        ("tent_rise", v4(air.tent_rise)),
+        ("tent_top", v4(air.tent_top)),
+        ("tent_fall", v4(air.tent_fall)),
+        ("phases", phases),
     ];
-    let mut text = String::new();
-    let _ = write!(text, "fn the_air() -> Air {{ return Air({}); }}\n{MAIN}", parts.join(", "));
+    let mut text = "fn the_air() -> Air {\n    var air: Air;\n".to_owned();
+    for (field, value) in fields {
+        let _ = writeln!(text, "    air.{field} = {value};");
+    }
+    text += "    return air;\n}\n";
+    text += MAIN;
     text
 }
 
