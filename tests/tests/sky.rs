@@ -126,7 +126,7 @@ fn the_transmittance_table_is_the_integral() {
     let gpu = tests::gpu();
     let medium = planet("earth");
     let mut baker = AirBaker::new(&gpu, &ShaderLibrary::checkout()).expect("it compiles");
-    baker.bake_alone(&gpu, &medium);
+    baker.bake_alone(&gpu, &medium.clone().into());
     let table = readback::texture_f32(&gpu, &baker.textures()[0].texture, 0).expect("it can be read");
     let texel = |x: usize, y: usize, c: usize| f64::from(table[(y * 256 + x) * 4 + c]);
     let (bottom, top) = (medium.bottom_radius_m, medium.bottom_radius_m + medium.top_altitude_m);

@@ -25,7 +25,9 @@ fn probe_ray(planet: &Planet, from_m: DVec3, direction: DVec3, sun: DVec3) -> Pr
 }
 
 fn sky(gpu: &Gpu, medium: &Medium, rays: &[ProbeRay]) -> Vec<ProbeLight> {
-    let found = probe(gpu, &ShaderLibrary::checkout(), &medium.clone().into(), rays, &ProbeOptions::default()).expect("it marches");
+    // Fine enough that the march's own error is small beside that of the orders.
+    let options = ProbeOptions { steps: 24, ..Default::default() };
+    let found = probe(gpu, &ShaderLibrary::checkout(), &medium.clone().into(), rays, &options).expect("it marches");
     assert_eq!(gpu.take_error(), None);
     found
 }
@@ -79,7 +81,7 @@ fn published_rays_of_all_orders() {
         });
     }
     errors.hold("ground 85", 0.28, 0.58);
-    errors.hold("ground 90", 1.17, 1.76);
+    errors.hold("ground 90", 1.4, 2.2);
     errors.hold("ground 94", 0.43, 0.64);
     errors.hold("space 85", 0.12, 0.35);
     errors.hold("thin", 0.11, 0.20);
@@ -92,7 +94,8 @@ fn irradiance(table: &[f32], medium: &Medium, altitude_m: f64, mu_s: f64) -> DVe
     let r = medium.bottom_radius_m + altitude_m;
     let (sine_dip, cosine_dip) = ((1.0 - (medium.bottom_radius_m / r) * (medium.bottom_radius_m / r)).sqrt(), medium.bottom_radius_m / r);
     let elevation = (mu_s * cosine_dip + (1.0 - mu_s * mu_s).sqrt() * sine_dip).asin();
-    let x = (((2.0 * (0.5 * elevation).sin() * map.scale).asinh() + map.low) * map.inverse * (SUNS - 1) as f64).clamp(0.0, (SUNS - 1) as f64);
+    let x =
+        (((2.0 * (0.5 * elevation).sin() * map.scale).asinh() + map.low) * map.inverse * (SUNS - 1) as f64).clamp(0.0, (SUNS - 1) as f64);
     let y = (altitude_m / medium.top_altitude_m).sqrt() * (ALTITUDES - 1) as f64;
     let (i, j) = ((x as usize).min(SUNS - 2), (y as usize).min(ALTITUDES - 2));
     let (a, b) = (x - i as f64, y - j as f64);
@@ -141,7 +144,7 @@ fn the_sky_s_irradiance_is_the_integral_of_its_radiance() {
             worst = worst.max(error.abs().max_element());
         }
     }
-    assert!(worst < 0.02, "{worst}");
+    assert!((0.015..0.025).contains(&worst), "{worst}");
 }
 
 #[test]

@@ -14,7 +14,7 @@
 
 use super::atmosphere::{Datum, Setting, read_air};
 use super::fault::{AssetErrors, Fault};
-use super::overlay::{Overlay, read_text};
+use super::overlay::read_text;
 use super::reader::{Faults, POSITIVE, Reader};
 use super::tree::{Data, Entry, Node, parse};
 use engine::air::Air;
@@ -53,7 +53,8 @@ pub fn read_planet(path: &Path, model: Option<&str>) -> Result<Planet, AssetErro
         name_model(air, word);
     }
     let faults = Faults::default();
-    let planet = read(Reader::new(&top, &faults), elsewhere.as_ref(), path.parent().unwrap_or(Path::new("")), &faults);
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let planet = read(Reader::new(&top, &faults), elsewhere.as_ref(), folder, &faults);
     let found = AssetErrors { faults: faults.into_inner() };
     for warning in found.faults.iter().filter(|f| !f.is_error()) {
         tracing::warn!("{warning}");
@@ -80,7 +81,6 @@ fn name_model(air: &mut Node, word: &str) {
     entries.push(Entry { key: "model".to_owned(), key_at: at, value });
 }
 
-/// `folder` is where the files lie that its air names.
 fn read(r: Reader<'_>, elsewhere: Option<&Node>, folder: &Path, faults: &Faults) -> Option<Planet> {
     let radius_m = r.number("radius_km", POSITIVE) * KM;
     let star = r.table("star").map(|t| {
@@ -100,8 +100,9 @@ fn read(r: Reader<'_>, elsewhere: Option<&Node>, folder: &Path, faults: &Faults)
     // Nothing is dragged here: gravity only serves the plausibility of `[physics]`, and stands for Earth's.
     let gm_m3_s2 = 9.8 * radius_m * radius_m;
     let datum = Datum::new(gm_m3_s2, radius_m);
-    let overlay = Overlay::new(folder, &[]);
-    let setting = Setting { overlay: &overlay, folder: ".", star: &Starlight::default() };
+    let beside = |name: &str| Some(folder.join(name)).filter(|p| p.is_file());
+    let star_light = Starlight::default();
+    let setting = Setting { beside: &beside, star: &star_light };
     let air = match elsewhere {
         Some(node) => {
             r.text("atmosphere");

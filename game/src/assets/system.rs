@@ -207,7 +207,7 @@ fn read_atmosphere(overlay: &Overlay, body: &str, datum: Datum, star: &Starlight
         physics.value.digest(&mut hash);
     }
     (
-        read_air(&Reader::new(&tree, faults), datum, &Setting { overlay, folder: &format!("bodies/{body}"), star }),
+        read_air(&Reader::new(&tree, faults), datum, &Setting { beside: &|name| overlay.find(format!("bodies/{body}/{name}")), star }),
         hash.finalize().to_hex().to_string(),
     )
 }

@@ -213,7 +213,10 @@ impl System {
         for (gm, list) in self.others(body) {
             // Half the distance at the start stands for the least.
             let distance = 0.5 * list.iter().fold(DVec3::ZERO, |sum, (track, w)| sum + places[*track] * *w).length();
-            let strength = |q: &DVec3| gm / self.tree.gm[body] * (q.length() / distance).powi(3);
+            let strength = |q: &DVec3| {
+                let ratio = q.length() / distance;
+                gm / self.tree.gm[body] * ratio * ratio * ratio
+            };
             let felt_by: Vec<usize> = (0..start.q.len()).filter(|i| strength(&start.q[*i]) > TIDE_COUNTS).collect();
             if !felt_by.is_empty() {
                 outside.push(Outside { gm, felt_by });

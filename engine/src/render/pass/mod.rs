@@ -2,6 +2,7 @@
 //!
 //! A pass has `new` (compiles), `skip` (why the scene does not need it, in words) and `record`.
 
+pub mod air_bands;
 pub mod air_orders;
 pub mod air_tables;
 pub mod bloom;

@@ -123,15 +123,9 @@ fn bound_moons_face_their_planets() {
     // Rotation and orbit come from different sources: IAU and IMCCE. Optical libration is 2e; what remains is the error of both
     // (Ganymede: 2.6°, in the prime meridian). Moons beyond Jupiter: `moons`.
     let s = sol();
-    for (key, bound_deg) in [
-        ("moon", 8.2),
-        ("phobos", 4.0),
-        ("deimos", 3.0),
-        ("io", 1.5),
-        ("europa", 2.2),
-        ("ganymede", 2.9),
-        ("callisto", 1.5),
-    ] {
+    for (key, bound_deg) in
+        [("moon", 8.2), ("phobos", 4.0), ("deimos", 3.0), ("io", 1.5), ("europa", 2.2), ("ganymede", 2.9), ("callisto", 1.5)]
+    {
         let moon = id(&s, key);
         let planet = s.body(moon).parent.unwrap();
         for days in [-300.0, 0.0, 3.3, 300.0] {
