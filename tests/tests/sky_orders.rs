@@ -7,6 +7,7 @@ use engine::air::model::orders::{ALTITUDES, DEGREE, DIRECTIONS, HEAD_ROWS, KERNE
 use engine::air::{Layer, Medium, Phase, Profile};
 use engine::gpu::{Gpu, ShaderLibrary, readback};
 use engine::render::pass::air_tables::AirBaker;
+use engine::render::pass::baseline_hillaire::HillaireBaker;
 use engine::render::pass::sky_probe::{ProbeLight, ProbeOptions, ProbeRay, probe};
 use engine::space::relative::narrow;
 use glam::{DVec3, Vec3};
@@ -178,6 +179,23 @@ fn the_sky_s_irradiance_is_the_integral_of_its_radiance() {
         }
     }
     assert!((0.015..0.025).contains(&worst), "{worst}");
+}
+
+#[test]
+fn the_baseline_s_table_is_of_the_size_of_the_sky() {
+    // Earth's multiple scattering at the ground under a high sun, mean over all directions: a few percent of the irradiance in blue.
+    let gpu = tests::gpu();
+    let shaders = ShaderLibrary::checkout();
+    let tables = AirBaker::new(&gpu, &shaders).expect("it compiles").bake_alone(&gpu, &planet("earth").medium);
+    let baker = HillaireBaker::new(&gpu, &shaders).expect("it compiles");
+    let mut encoder = gpu.encoder("baseline");
+    let table = baker.bake(&gpu, &mut encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default()), &tables);
+    gpu.submit(encoder);
+    let texels = readback::texture_f32(&gpu, &table.texture, 0).expect("it can be read");
+    assert!(texels.iter().all(|x| x.is_finite() && *x >= 0.0));
+    let noon = &texels[(64 - 1) * 4..64 * 4];
+    let [red, green, blue] = [0, 1, 2].map(|c| noon[c] * noon[c]);
+    assert!(red < green && green < blue && (0.01..0.06).contains(&blue), "{red} {green} {blue}");
 }
 
 #[test]

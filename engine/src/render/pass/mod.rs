@@ -5,6 +5,7 @@
 pub mod air_bands;
 pub mod air_orders;
 pub mod air_tables;
+pub mod baseline_hillaire;
 pub mod bloom;
 pub mod exposure;
 pub mod shadow;
