@@ -48,7 +48,9 @@ fn air_panels(air: Air, media: texture_2d_array<f32>, slot: i32, path: AirPath, 
     let high = air_altitude(air, path, end);
     let extinction = air_extinction(air, media, slot, min(low, high));
     let depth = max(max(extinction.x, extinction.y), extinction.z) * (end - begin);
-    return u32(clamp(ceil(max(depth, 40.0 * abs(high - low) / air.shape.y)), 1.0, f32(most)));
+    // Points for the optical depth that can be seen through, on top of those for the shape of the path.
+    let more = clamp(0.125 * depth - 1.0, 0.0, 3.0);
+    return u32(clamp(ceil(max(depth, 40.0 * abs(high - low) / air.shape.y)), 1.0, ceil(f32(most) + more)));
 }
 
 // From the path's start to `end` metres further; `count` points on a long stretch. `ray` is the direction of sight, `star` the star's sphere.
@@ -95,7 +97,7 @@ fn air_march(
                 // Where a point stands for much optical depth, the collocation overshoots: there its source is taken as even over its share.
                 let own = depths * (GAUSS_WEIGHT * one);
                 let even = (1.0 - exp(-own)) / max(own, vec3<f32>(1e-6));
-                let seen = mix(exp(-clamp(run * one - before, vec3<f32>(0.0), own)), even, smoothstep(vec3<f32>(0.25), vec3<f32>(1.0), own));
+                let seen = mix(exp(-clamp(run * one - before, vec3<f32>(0.0), own)), even, smoothstep(vec3<f32>(3.0), vec3<f32>(6.0), own));
                 out.radiance += (dot(n.span * GAUSS_WEIGHT, one) * exp(-depth - before)) * seen
                     * air_source(air, transmittance, orders, linear, slot, along, sun, phased * one, all * one, s, dot(n.altitude, one), eclipse);
                 before += own;
