@@ -186,7 +186,7 @@ fn the_baseline_s_table_is_of_the_size_of_the_sky() {
     // Earth's multiple scattering at the ground under a high sun, mean over all directions: a few percent of the irradiance in blue.
     let gpu = tests::gpu();
     let shaders = ShaderLibrary::checkout();
-    let tables = AirBaker::new(&gpu, &shaders).expect("it compiles").bake_alone(&gpu, &planet("earth").medium);
+    let tables = AirBaker::new(&gpu, &shaders).expect("it compiles").bake_alone(&gpu, &planet("earth").medium.clone().into());
     let baker = HillaireBaker::new(&gpu, &shaders).expect("it compiles");
     let mut encoder = gpu.encoder("baseline");
     let table = baker.bake(&gpu, &mut encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default()), &tables);

@@ -76,7 +76,7 @@ impl Draft {
             (root.join(&patch), Some(read(&under)?))
         };
         let now = match &base {
-            None if path.is_file() => read(&[path.clone()])?,
+            None if path.is_file() => read(std::slice::from_ref(&path))?,
             None => json!({}),
             Some(_) => read(&under.into_iter().chain(Some(path.clone()).filter(|p| p.is_file())).collect::<Vec<_>>())?,
         };

@@ -329,7 +329,7 @@ mod tests {
             let (x, y) = (legendre(a), legendre(b));
             // By the addition theorem at φ = 0 and up to degree 3, where no mode is missing.
             let turn: f64 = (0..4).map(|l| (0..MODES).map(|m| x[m][l] * y[m][l] * if m > 0 { 2.0 } else { 1.0 }).sum::<f64>()).sum();
-            let cos = a * b + ((1.0 - a * a) * (1.0 - b * b) as f64).sqrt();
+            let cos = a * b + ((1.0 - a * a) * (1.0 - b * b)).sqrt();
             let p = [1.0, cos, 0.5 * (3.0 * cos * cos - 1.0), 0.5 * (5.0 * cos * cos * cos - 3.0 * cos)];
             let series: f64 = p.iter().enumerate().map(|(l, p)| (2 * l + 1) as f64 / (4.0 * PI) * p).sum();
             assert!((turn - series).abs() < 1e-12, "{turn} {series}");

@@ -85,6 +85,6 @@ mod tests {
         let peak = integrate(&mut |x: f64| DVec3::splat((-1e6 * (x - 0.37) * (x - 0.37)).exp()), &[0.0, 0.4, 1.0], 1e-9);
         assert!((peak.x / (core::f64::consts::PI / 1e6).sqrt() - 1.0).abs() < 1e-9);
         assert_eq!(integrate(&mut |_| DVec3::ONE, &[], 1e-3), DVec3::ZERO);
-        assert_eq!(integrate(&mut |_| DVec3::NAN, &[0.0, 1.0], 1e-3).is_nan(), true);
+        assert!(integrate(&mut |_| DVec3::NAN, &[0.0, 1.0], 1e-3).is_nan());
     }
 }

@@ -186,7 +186,7 @@ fn light_takes_the_same_way_back() {
 #[test]
 fn orders_add_up_to_the_whole() {
     let ray = ray(DVec3::Z * 6.3601e6, DVec3::new(0.6, 0.0, 0.8), DVec3::new(0.0, 0.8, 0.6));
-    let whole = radiance(&earth(), &[ray.clone()], &Options { rel_error: 3e-3, ..Options::default() })[0];
+    let whole = radiance(&earth(), std::slice::from_ref(&ray), &Options { rel_error: 3e-3, ..Options::default() })[0];
     let orders = radiance_by_order(&earth(), &ray, 12, 40_000, 1);
     let sum: DVec3 = orders.iter().map(|o| o.0).sum();
     for channel in 0..3 {
