@@ -27,9 +27,8 @@ fn probe_ray(planet: &Planet, from_m: DVec3, direction: DVec3, sun: DVec3) -> Pr
 }
 
 fn sky(gpu: &Gpu, medium: &Medium, rays: &[ProbeRay]) -> Vec<ProbeLight> {
-    // Fine enough that the march's own error is small beside that of the orders.
-    let options = ProbeOptions { steps: 24, ..Default::default() };
-    let found = probe(gpu, &ShaderLibrary::checkout(), &medium.clone().into(), rays, &options).expect("it marches");
+    // As it is drawn: the march's own error counts too.
+    let found = probe(gpu, &ShaderLibrary::checkout(), &medium.clone().into(), rays, &ProbeOptions::default()).expect("it marches");
     assert_eq!(gpu.take_error(), None);
     found
 }
@@ -82,12 +81,12 @@ fn published_rays_of_all_orders() {
             if name == "earth" { format!("{from} {}", if low <= 85.0 { 85.0 } else { low }) } else { name.to_owned() }
         });
     }
-    errors.hold("ground 85", 0.28, 0.58);
-    errors.hold("ground 90", 1.4, 2.2);
-    errors.hold("ground 94", 0.43, 0.64);
-    errors.hold("space 85", 0.12, 0.35);
-    errors.hold("thin", 0.11, 0.20);
-    errors.hold("thick", 0.61, 1.58);
+    errors.hold("ground 85", 0.29, 0.59);
+    errors.hold("ground 90", 1.22, 1.75);
+    errors.hold("ground 94", 0.42, 0.66);
+    errors.hold("space 85", 0.31, 0.93);
+    errors.hold("thin", 0.21, 0.35);
+    errors.hold("thick", 0.58, 1.52);
 }
 
 #[test]
@@ -111,15 +110,15 @@ fn rays_through_other_planets_of_all_orders() {
             if name == "earth" { format!("earth {} {light}", if space { "space" } else { "air" }) } else { name.to_owned() }
         });
     }
-    errors.hold("earth air day", 0.2, 0.42);
-    errors.hold("earth air dusk", 0.42, 1.8);
-    errors.hold("earth air night", 1.41, 3.34);
-    errors.hold("earth space day", 0.21, 0.7);
-    errors.hold("earth space dusk", 0.18, 0.5);
-    errors.hold("thick", 1.02, 3.57);
-    errors.hold("hazy", 0.85, 6.07);
-    errors.hold("dusty", 1.58, 7.0);
-    errors.hold("small", 0.27, 1.46);
+    errors.hold("earth air day", 0.21, 0.47);
+    errors.hold("earth air dusk", 0.44, 1.82);
+    errors.hold("earth air night", 1.28, 3.13);
+    errors.hold("earth space day", 0.3, 0.86);
+    errors.hold("earth space dusk", 0.2, 0.54);
+    errors.hold("thick", 0.97, 3.47);
+    errors.hold("hazy", 0.89, 6.08);
+    errors.hold("dusty", 1.6, 7.03);
+    errors.hold("small", 0.33, 1.42);
 }
 
 /// The irradiance table at an altitude, under a sun of zenith cosine `mu_s`, as `air_sky_irradiance` asks it.
