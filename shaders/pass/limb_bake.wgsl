@@ -11,12 +11,11 @@ const LEAST_STEPS: f32 = 16.0;   // LimbTable::LEAST_STEPS
 const MOST_STEPS: f32 = 4096.0;  // LimbTable::MOST_STEPS
 
 @compute @workgroup_size(8, 8)
-fn bake(@builtin(global_invocation_id) id: vec3<u32>) {
+fn bake(@builtin(global_invocation_id) thread: vec3<u32>) {
     let size = textureDimensions(table);
-    if any(id.xy >= size) {
-        return;
-    }
-    let point = limb_point(air, f32(size.x), id.xy);
+    // Threads beyond the edge do the edge's work again.
+    let id = min(thread.xy, size - 1u);
+    let point = limb_point(air, f32(size.x), id);
     let top = air.shape.y;
     let q = top * (2.0 * air.shape.x + top);
     var path: AirPath;
@@ -27,5 +26,5 @@ fn bake(@builtin(global_invocation_id) id: vec3<u32>) {
     let hidden = limb_hidden(path, air.shape.x, point.y, limb_sides(-point.x, point.y).x);
     let count = u32(clamp(ceil(end / sky.settings[1].x), LEAST_STEPS, MOST_STEPS));
     let column = limb_column(air, path, end, sky.settings[0].w, LimbShadow(hidden, hidden, hidden, 0.0, 1.0), count, true);
-    textureStore(table, id.xy, vec4<f32>(sky.settings[0].rgb * column, 1.0));
+    textureStore(table, id, vec4<f32>(sky.settings[0].rgb * column, 1.0));
 }

@@ -9,13 +9,12 @@
 @group(0) @binding(2) var table: texture_storage_2d<rgba32float, write>;
 
 @compute @workgroup_size(8, 8)
-fn bake(@builtin(global_invocation_id) id: vec3<u32>) {
+fn bake(@builtin(global_invocation_id) thread: vec3<u32>) {
     let size = textureDimensions(table);
-    if any(id.xy >= size) {
-        return;
-    }
+    // Threads beyond the edge do the edge's work again.
+    let id = min(thread.xy, size - 1u);
     let graded = vt.counts.w > 0u;
-    let x = vec2<f32>(id.xy) / vec2<f32>(size - 1u);
+    let x = vec2<f32>(id) / vec2<f32>(size - 1u);
     var path: AirPath;
     path.altitude = space_height(air, graded, x.y);
     path.radius = air.shape.x + path.altitude;
@@ -33,5 +32,5 @@ fn bake(@builtin(global_invocation_id) id: vec3<u32>) {
         from_s = to_s;
         from_extinction = to_extinction;
     }
-    textureStore(table, id.xy, vec4<f32>(sum, 1.0));
+    textureStore(table, id, vec4<f32>(sum, 1.0));
 }

@@ -12,11 +12,10 @@
 const SUN_RAD: f32 = 0.0047;  // ViewTable::SUN_RAD
 
 @compute @workgroup_size(8, 8)
-fn bake(@builtin(global_invocation_id) id: vec3<u32>) {
+fn bake(@builtin(global_invocation_id) thread: vec3<u32>) {
     let size = textureDimensions(table);
-    if any(id >= size) {
-        return;
-    }
+    // Threads beyond the edge do the edge's work again.
+    let id = min(thread, size - 1u);
     let graded = vt.counts.w > 0u;
     let x = vec3<f32>(id) / vec3<f32>(size - 1u);
     let top = air.shape.y;

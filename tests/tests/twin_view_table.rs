@@ -5,7 +5,7 @@ use engine::air::model::ViewTable;
 use engine::air::model::view_space::Spacing;
 use engine::air::model::view_table::Split;
 use engine::air::{Air, Layer, Medium, Model, Phase, Profile, reference};
-use engine::gpu::ShaderLibrary;
+use engine::gpu::{Gpu, ShaderLibrary};
 use engine::render::pass::sky_probe::{ProbeLight, ProbeOptions, ProbeRay, probe};
 use engine::render::{OffscreenImage, Renderer, RendererOptions, Target};
 use engine::scene::{AutoOr, Body, Camera, Force, Snapshot, Star, Surface};
@@ -35,10 +35,9 @@ fn vec4(v: DVec3, w: f64) -> [f32; 4] {
     [narrow(v.x), narrow(v.y), narrow(v.z), narrow(w)]
 }
 
-fn ask(medium: &Medium, model: &ViewTable, rays: &[ProbeRay]) -> Vec<ProbeLight> {
-    let gpu = tests::gpu();
+fn ask(gpu: &Gpu, medium: &Medium, model: &ViewTable, rays: &[ProbeRay]) -> Vec<ProbeLight> {
     let air = Air { medium: medium.clone(), bands: None, model: Model::ViewTable(model.clone()) };
-    let found = probe(&gpu, &ShaderLibrary::checkout(), &air, rays, &ProbeOptions::default()).expect("it is probed");
+    let found = probe(gpu, &ShaderLibrary::checkout(), &air, rays, &ProbeOptions::default()).expect("it is probed");
     assert_eq!(gpu.take_error(), None);
     found
 }
@@ -71,7 +70,7 @@ fn errors(model: &ViewTable) -> (f64, f64) {
     let views = views();
     let rays: Vec<ProbeRay> = views.iter().map(|v| probe_ray(v.0, v.1, v.2, v.3, 0.0)).collect();
     let (mut sum, mut worst, mut n) = (0.0, 0.0_f64, 0.0);
-    for (light, (view, ray)) in ask(&medium, model, &rays).iter().zip(views.iter().zip(&rays)) {
+    for (light, (view, ray)) in ask(&tests::gpu(), &medium, model, &rays).iter().zip(views.iter().zip(&rays)) {
         let (h, phi, delta, _) = *view;
         let entry = model.entry(&medium, &split, h, phi, delta);
         let nu = (0..3).map(|i| f64::from(ray.ray[i]) * f64::from(ray.sun[i])).sum::<f64>();
@@ -126,7 +125,7 @@ fn the_difference_of_two_depths_keeps_its_digits() {
         }
     }
     let mut worst = 0.0_f64;
-    for (light, (h, mu, distance, truth)) in ask(&medium, &ViewTable::default(), &rays).iter().zip(&truths) {
+    for (light, (h, mu, distance, truth)) in ask(&tests::gpu(), &medium, &ViewTable::default(), &rays).iter().zip(&truths) {
         let found = -f64::from(light.transmittance[2]).ln();
         // What f32 knows of a transmittance near 1.
         let error = (found - truth.z).abs() / (truth.z + 1e-5);
@@ -160,7 +159,7 @@ fn before_a_surface_there_is_its_share_of_the_air() {
             truths.push(seen(from) - through * seen(from + ray * distance));
         }
     }
-    for ((light, truth), ray) in ask(&medium, &ViewTable::default(), &rays).iter().zip(&truths).zip(&rays) {
+    for ((light, truth), ray) in ask(&tests::gpu(), &medium, &ViewTable::default(), &rays).iter().zip(&truths).zip(&rays) {
         let error = f64::from(light.radiance[1]) / truth.y - 1.0;
         println!("{:?} {:?}: {error:+.3}", ray.up[3], ray.ray);
         assert!(error.abs() < 0.06, "{ray:?}: {:?}, not {truth}", light.radiance);
@@ -182,6 +181,8 @@ fn nothing_is_nan_wherever_one_stands() {
         Medium { bottom_radius_m: 1.0e3, top_altitude_m: 1.0e3, ..medium() },
         Medium { bottom_radius_m: 1.0e8, top_altitude_m: 100.0, ..medium() },
     ];
+    let gpu = tests::gpu();
+    let quick = ViewTable { samples: 12, ..ViewTable::default() };
     for medium in media {
         let top = medium.top_altitude_m;
         let mut rays = Vec::new();
@@ -194,11 +195,7 @@ fn nothing_is_nan_wherever_one_stands() {
                 }
             }
         }
-        for (ray, light) in rays.iter().zip(ask(
-            &medium,
-            &ViewTable { height_size: 8, view_size: 16, sun_size: 12, samples: 12, ..ViewTable::default() },
-            &rays,
-        )) {
+        for (ray, light) in rays.iter().zip(ask(&gpu, &medium, &quick, &rays)) {
             let fine =
                 light.radiance.iter().all(|x| x.is_finite() && *x >= 0.0) && light.transmittance.iter().all(|x| (0.0..=1.0).contains(x));
             assert!(fine, "{ray:?}: {light:?}");
