@@ -42,6 +42,17 @@ fn air_source(
             * air_orders(air, orders, linear, slot, altitude, mu_s, (along.path.slope + s) / (air.shape.x + altitude), along.ray_sun);
 }
 
+// Panels for a stretch: one where little changes on it, `most` on a long one.
+fn air_panels(air: Air, media: texture_2d_array<f32>, slot: i32, path: AirPath, begin: f32, end: f32, most: u32) -> u32 {
+    let low = air_altitude(air, path, begin);
+    let high = air_altitude(air, path, end);
+    let extinction = air_extinction(air, media, slot, min(low, high));
+    let depth = max(max(extinction.x, extinction.y), extinction.z) * (end - begin);
+    // Points for the optical depth that can be seen through, on top of those for the shape of the path.
+    let more = clamp(0.125 * depth - 1.0, 0.0, 3.0);
+    return u32(clamp(ceil(max(depth, 40.0 * abs(high - low) / air.shape.y)), 1.0, ceil(f32(most) + more)));
+}
+
 // From the path's start to `end` metres further; `count` points on a long stretch. `ray` is the direction of sight, `star` the star's sphere.
 fn air_march(
     air: Air, media: texture_2d_array<f32>, transmittance: texture_2d_array<f32>, orders: texture_3d<f32>, linear: sampler,
@@ -64,7 +75,7 @@ fn air_march(
         let next = air_next_cut(air, path, begin, end, vec4<f32>(night, -1.0, -1.0), shade.cuts);
         let middle = 0.5 * (begin + next);
         let dark = middle > night.x && middle < night.y;
-        let panels = select(most, max(most / 2u, 1u), dark);
+        let panels = air_panels(air, media, slot, path, begin, next, select(most, max(most / 2u, 1u), dark));
         for (var i = 0u; i < panels; i++) {
             let n = air_nodes(air, path, begin, next, i, panels);
             let m0 = air_matter(air, media, slot, n.altitude.x);
@@ -75,6 +86,7 @@ fn air_march(
             let run = depths * GAUSS_RUN;
             let phased = mat4x3<f32>(m0.scattering * along.phase, m1.scattering * along.phase, m2.scattering * along.phase, m3.scattering * along.phase);
             let all = mat4x3<f32>(m0.scattering * ONES, m1.scattering * ONES, m2.scattering * ONES, m3.scattering * ONES);
+            var before = vec3<f32>(0.0);
             for (var j = 0u; j < 4u; j++) {
                 let one = select(vec4<f32>(0.0), ONES, vec4<u32>(0u, 1u, 2u, 3u) == vec4<u32>(j));
                 let s = dot(n.s, one);
@@ -82,8 +94,13 @@ fn air_march(
                 if AIR_ECLIPSES && shade.falls {
                     eclipse = eclipse_at(body, star, ray * (path.start + s), air.shape.y);
                 }
-                out.radiance += (dot(n.span * GAUSS_WEIGHT, one) * exp(-depth - run * one))
+                // Where a point stands for much optical depth, the collocation overshoots: there its source is taken as even over its share.
+                let own = depths * (GAUSS_WEIGHT * one);
+                let even = (1.0 - exp(-own)) / max(own, vec3<f32>(1e-6));
+                let seen = mix(exp(-clamp(run * one - before, vec3<f32>(0.0), own)), even, smoothstep(vec3<f32>(3.0), vec3<f32>(6.0), own));
+                out.radiance += (dot(n.span * GAUSS_WEIGHT, one) * exp(-depth - before)) * seen
                     * air_source(air, transmittance, orders, linear, slot, along, sun, phased * one, all * one, s, dot(n.altitude, one), eclipse);
+                before += own;
             }
             depth += depths * GAUSS_WEIGHT;
         }

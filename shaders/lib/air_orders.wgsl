@@ -29,7 +29,8 @@ fn orders_sun_x(air: Air, dip: vec2<f32>, mu_s: f32) -> f32 {
 }
 // The inverse: cosine of the sun's zenith angle.
 fn orders_sun_mu(air: Air, dip: vec2<f32>, x: f32) -> f32 {
-    let t = clamp(sinh(x / air.orders.z - air.orders.y) / air.orders.x, -2.0, 2.0);
+    // At low altitudes the sun stands in the zenith before x is 1.
+    let t = clamp(sinh(x / air.orders.z - air.orders.y) / air.orders.x, -2.0, sqrt(2.0 + 2.0 * dip.x));
     let sine = t * sqrt(max(1.0 - 0.25 * t * t, 0.0));
     return clamp(sine * dip.y - (1.0 - 0.5 * t * t) * dip.x, -1.0, 1.0);
 }

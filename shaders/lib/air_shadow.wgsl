@@ -77,8 +77,13 @@ fn air_shade(body: Body, star: vec4<f32>, point: vec3<f32>, ray: vec3<f32>, end:
     return out;
 }
 
-// Where |p₀ + s p₁| < r₀ + s r₁ between 0 and `end`; (end, end): nowhere.
+// Where |p₀ + s p₁| < r₀ + s r₁ between 0 and `end`; (end, end): nowhere. A ray that turns from the axis by less than the cone opens
+// is taken for inside all along when either of its ends is.
 fn cone_cut(p0: vec3<f32>, p1: vec3<f32>, r0: f32, r1: f32, end: f32) -> vec2<f32> {
+    if dot(p1, p1) <= r1 * r1 + 1e-12 {
+        let within = length(p0) < r0 || length(p0 + end * p1) < r0 + end * r1;
+        return vec2<f32>(select(end, 0.0, within), end);
+    }
     let roots = cone_roots(dot(p1, p1) - r1 * r1, dot(p0, p1) - r0 * r1, dot(p0, p0) - r0 * r0, end);
     let inside = r0 + 0.5 * (roots.x + roots.y) * r1 > 0.0;
     return select(vec2<f32>(end), roots, roots.y > roots.x && inside);

@@ -29,6 +29,7 @@ struct Air {
     jumps_low: vec4<f32>,       // altitudes where density jumps; −1e9: none
     jumps_high: vec4<f32>,
     orders: vec4<f32>,          // how the sun's height is mapped in the table of further orders: SunMap of engine/src/air/model/orders.rs, 0
+    bands: array<vec4<f32>, 6>, // columns of the matrices to linear sRGB of the two media that draw it; w of a first: that medium's slot; w of [1]: how many of the two
 }
 
 struct Airs {
@@ -41,11 +42,17 @@ struct AirMatter {
     extinction: vec3<f32>,
 }
 
+// From the channels of the k-th of the media that draw the air to linear sRGB. One that is not drawn in bands is the first itself.
+fn air_to_rgb(air: Air, k: u32) -> mat3x3<f32> {
+    return mat3x3<f32>(air.bands[3u * k].xyz, air.bands[3u * k + 1u].xyz, air.bands[3u * k + 2u].xyz);
+}
+
 // Relative density of each class of an analytic medium.
 fn air_density(air: Air, altitude: f32) -> vec4<f32> {
     let h = max(altitude, -AIR_FLOOR_M);
     let tent = clamp(min((h - air.tent_bottom) * air.tent_rise, (air.tent_top - h) * air.tent_fall), vec4<f32>(0.0), vec4<f32>(1.0));
-    return select(exp(-h * air.inverse_height), tent, air.tent_rise > vec4<f32>(0.0));
+    // Far below the datum a thin layer would be denser than a number can be.
+    return select(exp(min(-h * air.inverse_height, vec4<f32>(60.0))), tent, air.tent_rise > vec4<f32>(0.0));
 }
 
 // A row of the table at a column that need not be whole.

@@ -50,16 +50,21 @@ fn sky_view(frame: Frame, uv: vec2<f32>, stored: f32) -> SkyView {
     return SkyView(through / stretch, select(1e30, axis_distance(frame, stored) * stretch, drawn), !drawn, frame.up.w);
 }
 
-// From afar the air at a limb is thinner than a pixel: there, several rays across it stand for one. Elsewhere: 1.
-// From within the air, ground that was drawn ends the ray where it stands.
+// From afar the air at a limb is thinner than a pixel: there, several rays across it stand for one. So they do along the horizon of a
+// smooth body, whose own picture fades over one pixel there. Elsewhere: 1. From within the air, ground that was drawn ends the ray where it stands.
 fn sky_rays(body: Body, air: Air, view: SkyView) -> u32 {
     let path = air_path(air, body.up.xyz, body.up.w, view.ray);
-    if path.start < 0.0 || view.surface <= path.start || !(path.start > 0.0 || view.datum) {
+    if path.start < 0.0 || view.surface <= path.start {
         return 1u;
     }
-    let pixel = view.pixel * (path.start + path.exit);
     let low = air_altitude(air, path, clamp(-path.slope, 0.0, path.exit));
-    return select(1u, 5u, pixel > 0.05 * air.shape.y && low < air.shape.y + pixel && low > -pixel);
+    let horizon = path.start - path.slope;
+    if body.ids.w == 0 && view.surface > 0.8 * horizon && abs(low) < view.pixel * horizon {
+        return 5u;
+    }
+    let pixel = view.pixel * (path.start + path.exit);
+    let thin = (path.start > 0.0 || view.datum) && pixel > 0.05 * air.shape.y;
+    return select(1u, 5u, thin && low < air.shape.y + pixel && low > -pixel);
 }
 
 // The k-th of `rays` rays across the pixel; a single one is the view itself.

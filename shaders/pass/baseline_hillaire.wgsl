@@ -1,6 +1,7 @@
-// A baseline for `bench air`, not used by any picture: the table of isotropic multiple scattering [Hillaire 2020, "A Scalable and Production Ready Sky and Atmosphere Rendering Technique", §5.5]:
+// A baseline for `bench air`, not used by any picture: the table of isotropic multiple scattering
+// [Hillaire 2020, "A Scalable and Production Ready Sky and Atmosphere Rendering Technique", §5.5]:
 // second-order light averaged over 64 directions, times the geometric series of all further orders. One workgroup per texel.
-// What the model `physical` does instead: air_orders.wgsl.
+// Rust side: engine/src/render/pass/baseline_hillaire.rs. What the model `physical` does instead: air_orders.wgsl.
 
 #include "lib/air.wgsl"
 #include "lib/sunlight.wgsl"

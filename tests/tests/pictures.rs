@@ -298,6 +298,14 @@ fn what_the_ground_skips_changes_nothing() {
     let camera = "at:earth,42.36,-3.62,200,60,-5,55";
     let plain = stage.take("leo", Some(NOON), camera, SIZE, Force::default());
     let forced = stage.take("leo", Some(NOON), camera, SIZE, Force { all: true });
-    assert!(plain.bytes == forced.bytes, "forced passes changed the picture");
-    assert!(plain.hdr == forced.hdr, "forced passes changed the light");
+    // Forced, the air is marched at every pixel; else a pixel between four that agree takes their mean (see sky_physical.wgsl).
+    let (mut worst, mut squares) = (0.0_f32, 0.0_f64);
+    for (a, b) in plain.hdr.rgba.iter().zip(&forced.hdr.rgba) {
+        let off = (a - b).abs() / b.abs().max(1e-3);
+        worst = worst.max(off);
+        squares += f64::from(off * off);
+    }
+    let rms = (squares / plain.hdr.rgba.len() as f64).sqrt();
+    println!("the air at half rate: {rms:.2e} rms, {worst:.2e} at worst");
+    assert!(worst < 0.02 && rms < 1e-3, "forced passes changed the light: {rms} rms, {worst} at worst");
 }

@@ -80,7 +80,8 @@ fn mirrored_structs_have_the_layout_of_their_twins() {
                 phases,
                 jumps_low,
                 jumps_high,
-                orders
+                orders,
+                bands
             }),
         ),
         ("lib/phase.wgsl", "Phases", fields!(rust::PhasesUniform { g, x, y, z })),

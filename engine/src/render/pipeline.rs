@@ -65,7 +65,7 @@ pub const fn sampler_entry(binding: u32, kind: wgpu::SamplerBindingType) -> wgpu
 pub struct PipelineKind<'a> {
     /// Name, of shader file and pass.
     pub label: &'a str,
-    /// The module; entry points `vertex` and `fragment`.
+    /// The module; entry points `vertex` and, unless told otherwise, `fragment`.
     pub module: &'a wgpu::ShaderModule,
     /// Bind group layouts from group 0 on.
     pub groups: &'a [&'a wgpu::BindGroupLayout],
@@ -79,6 +79,10 @@ pub struct PipelineKind<'a> {
     pub depth: Option<bool>,
     /// Faces left out.
     pub cull: Option<wgpu::Face>,
+    /// Entry point of the fragment shader.
+    pub entry: &'a str,
+    /// Colour targets, all of one format.
+    pub colours: usize,
     /// Values of `override` constants.
     pub constants: &'a [(&'a str, f64)],
 }
@@ -86,7 +90,19 @@ pub struct PipelineKind<'a> {
 impl<'a> PipelineKind<'a> {
     /// Draws opaque geometry into HDR and depth.
     pub const fn opaque(label: &'a str, module: &'a wgpu::ShaderModule, groups: &'a [&'a wgpu::BindGroupLayout]) -> Self {
-        Self { label, module, groups, buffers: &[], colour: Some(HDR), blend: None, depth: Some(true), cull: None, constants: &[] }
+        Self {
+            label,
+            module,
+            groups,
+            buffers: &[],
+            colour: Some(HDR),
+            blend: None,
+            depth: Some(true),
+            cull: None,
+            entry: "fragment",
+            colours: 1,
+            constants: &[],
+        }
     }
     /// Draws one full-screen triangle into a colour target.
     pub const fn full_screen(
@@ -95,7 +111,19 @@ impl<'a> PipelineKind<'a> {
         groups: &'a [&'a wgpu::BindGroupLayout],
         colour: wgpu::TextureFormat,
     ) -> Self {
-        Self { label, module, groups, buffers: &[], colour: Some(colour), blend: None, depth: None, cull: None, constants: &[] }
+        Self {
+            label,
+            module,
+            groups,
+            buffers: &[],
+            colour: Some(colour),
+            blend: None,
+            depth: None,
+            cull: None,
+            entry: "fragment",
+            colours: 1,
+            constants: &[],
+        }
     }
     /// Makes it.
     pub fn make(&self, gpu: &Gpu) -> wgpu::RenderPipeline {
@@ -106,7 +134,8 @@ impl<'a> PipelineKind<'a> {
             immediate_size: 0,
         });
         let compilation_options = wgpu::PipelineCompilationOptions { constants: self.constants, ..Default::default() };
-        let targets = [self.colour.map(|format| wgpu::ColorTargetState { format, blend: self.blend, write_mask: wgpu::ColorWrites::ALL })];
+        let target = self.colour.map(|format| wgpu::ColorTargetState { format, blend: self.blend, write_mask: wgpu::ColorWrites::ALL });
+        let targets = vec![target; self.colours];
         gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some(self.label),
             layout: Some(&layout),
@@ -127,7 +156,7 @@ impl<'a> PipelineKind<'a> {
             multisample: wgpu::MultisampleState::default(),
             fragment: self.colour.map(|_| wgpu::FragmentState {
                 module: self.module,
-                entry_point: Some("fragment"),
+                entry_point: Some(self.entry),
                 compilation_options,
                 targets: &targets,
             }),

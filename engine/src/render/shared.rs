@@ -262,6 +262,22 @@ impl FrameContext<'_> {
         pass
     }
 
+    /// Begins a pass into two colour views of one size, without depth and with their old contents; group 0 is bound.
+    pub fn draw_pair<'e>(&'e mut self, name: &'static str, views: [&wgpu::TextureView; 2]) -> wgpu::RenderPass<'e> {
+        let attachments = views.map(|view| {
+            let ops = wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store };
+            Some(wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops })
+        });
+        let mut pass = self.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some(name),
+            color_attachments: &attachments,
+            timestamp_writes: self.timer.as_mut().and_then(|t| t.render(name)),
+            ..Default::default()
+        });
+        pass.set_bind_group(0, &self.shared.frame_group, &[]);
+        pass
+    }
+
     /// Begins a compute pass; group 0 is bound.
     pub fn compute(&mut self, name: &'static str) -> wgpu::ComputePass<'_> {
         let mut pass = self.encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {

@@ -20,6 +20,8 @@ pub struct Targets {
     pub opaque: Texture,
     /// The same behind an air that covers the whole picture; written by the sky pass.
     pub aerial: Texture,
+    /// Radiance and transmittance of an air at every second pixel of every second row; the sky pass's own.
+    pub sky: [Texture; 2],
     /// Depth of opaque things.
     pub depth: Texture,
     /// Bloom chain: level 0 is half the picture.
@@ -39,6 +41,7 @@ impl Targets {
         Self {
             size,
             opaque: Texture::new(d, "hdr opaque", size, HDR, hdr),
+            sky: ["half radiance", "half transmittance"].map(|name| Texture::new(d, name, half, HDR, hdr)),
             aerial: Texture::new(d, "hdr aerial", size, HDR, hdr),
             depth: Texture::new(d, "depth", size, DEPTH, hdr),
             bloom_levels: (0..levels).map(|i| bloom.level_view(i)).collect(),

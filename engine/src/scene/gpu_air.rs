@@ -7,7 +7,7 @@ use crate::air::model::view_table::{AlphaColour, Split, ViewTable};
 use crate::air::{Classes, Layer, Medium, Phase, Profile};
 use crate::space::relative::{narrow, narrow3};
 use bytemuck::{Pod, Zeroable};
-use glam::DVec3;
+use glam::{DMat3, DVec3, Vec3};
 
 /// Atmospheres that the tables hold at once.
 pub const MAX_AIRS: usize = 16;
@@ -49,6 +49,7 @@ pub struct AirUniform {
     pub jumps_low: [f32; 4],
     pub jumps_high: [f32; 4],
     pub orders: [f32; 4],
+    pub bands: [[f32; 4]; 6],
 }
 
 /// `Airs` of `shaders/lib/medium.wgsl`.
@@ -77,10 +78,29 @@ impl AirUniform {
         }
         let map = SunMap::new(medium);
         air.orders = [narrow(map.scale), narrow(map.low), narrow(map.inverse), 0.0];
+        air.bands = [vec4(Vec3::X, 0.0), vec4(Vec3::Y, 1.0), vec4(Vec3::Z, 0.0), [0.0; 4], [0.0; 4], [0.0; 4]];
         if classes.direct {
             medium.layers.iter().take(Classes::MAX).enumerate().for_each(|(i, layer)| air.set(i, layer));
         }
         air
+    }
+
+    /// Drawn by the medium in this slot, its own.
+    #[must_use]
+    pub fn in_slot(mut self, slot: u32) -> Self {
+        self.bands[0][3] = slot as f32;
+        self
+    }
+
+    /// Drawn by the two media in these slots.
+    #[must_use]
+    pub fn in_bands(mut self, to_rgb: &[DMat3; 2], slots: [u32; 2]) -> Self {
+        for (k, m) in to_rgb.iter().enumerate() {
+            (0..3).for_each(|c| self.bands[3 * k + c] = vec4(narrow3(m.col(c)), 0.0));
+            self.bands[3 * k][3] = slots[k] as f32;
+        }
+        self.bands[1][3] = 2.0;
+        self
     }
 
     fn set(&mut self, i: usize, layer: &Layer) {
@@ -128,12 +148,14 @@ pub fn media_rows(medium: &Medium, classes: &Classes) -> Vec<[f32; 4]> {
         let root = x * (1.0 + floor) - floor;
         root * root.abs() * medium.top_altitude_m
     };
+    // Far below the datum a thin layer would be denser than an f32 can be.
+    let held = |v: DVec3| vec4(narrow3(v.min(DVec3::splat(1e20))), 0.0);
     let mut rows: Vec<[f32; 4]> = Vec::with_capacity(MEDIA_ROWS * MEDIA_COLUMNS);
     for k in 0..Classes::MAX {
         let of = |x: f64| classes.list.get(k).map_or(DVec3::ZERO, |c| c.scattering(medium, altitude(x)));
-        rows.extend(columns().map(|x| vec4(narrow3(of(x)), 0.0)));
+        rows.extend(columns().map(|x| held(of(x))));
     }
-    rows.extend(columns().map(|x| vec4(narrow3(medium.extinction(altitude(x))), 0.0)));
+    rows.extend(columns().map(|x| held(medium.extinction(altitude(x)))));
     let value = |k: usize, x: f64| classes.list.get(k).map_or(0.0, |c| c.value(libm::cos(x * x * core::f64::consts::PI)));
     rows.extend(columns().map(|x| [0, 1, 2, 3].map(|k| narrow(value(k, x)))));
     rows

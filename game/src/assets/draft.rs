@@ -76,7 +76,7 @@ impl Draft {
             (root.join(&patch), Some(read(&under)?))
         };
         let now = match &base {
-            None if path.is_file() => read(&[path.clone()])?,
+            None if path.is_file() => read(std::slice::from_ref(&path))?,
             None => json!({}),
             Some(_) => read(&under.into_iter().chain(Some(path.clone()).filter(|p| p.is_file())).collect::<Vec<_>>())?,
         };
@@ -153,7 +153,8 @@ impl Draft {
         let lines = |faults: &[Fault]| -> Vec<String> { faults.iter().map(|f| f.message.clone()).collect() };
         let tree = parse(&source).map_err(|faults| lines(&faults).join("\n"))?;
         let faults = Faults::default();
-        let air = read_air(&Reader::new(&tree, &faults), datum, &Setting { overlay, folder: &format!("bodies/{}", self.body), star });
+        let beside = |name: &str| overlay.find(format!("bodies/{}/{name}", self.body));
+        let air = read_air(&Reader::new(&tree, &faults), datum, &Setting { beside: &beside, star });
         let found = faults.into_inner();
         if found.iter().any(Fault::is_error) { Err(lines(&found).join("\n")) } else { Ok((air, lines(&found))) }
     }

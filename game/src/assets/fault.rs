@@ -136,6 +136,9 @@ impl Fault {
 impl std::error::Error for Fault {}
 
 impl Diagnostic for Fault {
+    fn severity(&self) -> Option<miette::Severity> {
+        Some(if self.is_error() { miette::Severity::Error } else { miette::Severity::Warning })
+    }
     fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
         self.help.as_ref().map(|h| Box::new(h) as Box<dyn fmt::Display>)
     }

@@ -58,6 +58,7 @@
 //! | … `profile` | `{ kind = "exponential", scale_height_m }`, `{ kind = "tent", bottom_m, peak_m, top_m }`, `{ kind = "constant", bottom_m, top_m }`, `{ kind = "table", altitude_m = [..], density = [..] }`; a `gas` needs none |
 //! | … `phase` | `{ kind = "rayleigh" }`, `"henyey_greenstein"` and `"cornette_shanks"` with `g`, `"elek_rayleigh"`, `"isotropic"`, `{ kind = "table", angle_deg = [..], value = [..] }`; a `gas` or an `absorber` needs none |
 //! | `[thickness]`, `[limb_table]`, `[view_table]`, `[gradient]` | *optional*, the settings of that model; every key may be left out: see [`engine::air::model`] |
+//! | `[[fog]]` | *optional*, banks of fog and nebulae, whatever the `model`: `latitude_deg`, `longitude_deg`, `altitude_m` of the centre, `radius_m`; *optional* `name`, `thickness = { … }` with the keys of `[thickness]` |
 //! | `[physics]` | *optional*, what drags: `kind = "us76"` (Earth) or `"hydrostatic"`; `drag_top_m`; hydrostatic also `temperature_k`, `pressure_pa`, `molar_mass_kg_mol`, `heat_capacity_ratio`, *optional* `lapse = [{ to_altitude_m, k_per_m }]`. Gravity is the body's own |
 //!
 //! # `system.toml`
@@ -74,6 +75,7 @@ pub mod body;
 pub mod draft;
 pub mod fault;
 pub mod fields;
+pub mod listing;
 pub mod overlay;
 pub mod planet;
 pub mod reader;
@@ -185,12 +187,12 @@ impl Assets {
 
     /// The bodies there are.
     pub fn bodies(&self) -> Vec<String> {
-        system::bodies(&self.overlay)
+        listing::bodies(&self.overlay)
     }
 
     /// One body checked: its own files, and the systems that list it. Those, and what is hardly meant.
     pub fn check_body(&self, key: &str) -> Result<(Vec<String>, Vec<String>), AssetErrors> {
-        let systems: Vec<String> = self.systems().into_iter().filter(|s| system::lists(&self.overlay, s, key)).collect();
+        let systems: Vec<String> = self.systems().into_iter().filter(|s| listing::lists(&self.overlay, s, key)).collect();
         let (mut errors, mut warnings) = (AssetErrors::default(), Vec::new());
         if systems.is_empty() {
             warnings.extend(errors.keep(system::load_body(&self.overlay, key)).into_iter().flatten());
@@ -216,7 +218,7 @@ impl Assets {
             systems.insert(key, system);
         }
         for body in self.bodies() {
-            if !systems.keys().any(|s| system::lists(&self.overlay, s, &body)) {
+            if !systems.keys().any(|s| listing::lists(&self.overlay, s, &body)) {
                 warnings.extend(errors.keep(system::load_body(&self.overlay, &body)).into_iter().flatten());
             }
         }

@@ -12,14 +12,14 @@
 //! ```
 //! Not here: bodies of a system ([`super::body`]); the keys of an air ([`super::atmosphere::keys`]).
 
-use super::atmosphere::{Datum, Setting, read_air};
+use super::atmosphere::{AirSpec, Datum, Setting, read_air};
 use super::fault::{AssetErrors, Fault};
-use super::overlay::{Overlay, read_text};
+use super::overlay::read_text;
 use super::reader::{Faults, POSITIVE, Reader};
 use super::tree::{Data, Entry, Node, parse};
 use engine::air::Air;
 use engine::light::spectrum::Starlight;
-use engine::units::{DEG, KM};
+use engine::units::{DEG, KM, NM};
 use std::path::Path;
 
 /// The star as the planet sees it.
@@ -49,11 +49,18 @@ pub fn read_planet(path: &Path, model: Option<&str>) -> Result<Planet, AssetErro
         Some(file) => Some(tree(&path.parent().unwrap_or(Path::new("")).join(file))?),
         None => None,
     };
-    if let (Some(word), Some(air)) = (model, elsewhere.as_mut().or_else(|| inside(&mut top))) {
-        name_model(air, word);
+    let channels = falling(&top);
+    if let Some(air) = elsewhere.as_mut().or_else(|| inside(&mut top)) {
+        model.iter().for_each(|word| put(air, "model", Data::Text((*word).to_owned())));
+        // Three wavelengths are asked for: colours as the eye sees them are no part of it.
+        put(air, "spectrum", Data::Text("rgb".to_owned()));
+        if let Some(channels) = channels.filter(|_| air.get("wavelengths_nm").is_none()) {
+            put(air, "wavelengths_nm", channels);
+        }
     }
     let faults = Faults::default();
-    let planet = read(Reader::new(&top, &faults), elsewhere.as_ref(), path.parent().unwrap_or(Path::new("")), &faults);
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let planet = read(Reader::new(&top, &faults), elsewhere.as_ref(), folder, &faults);
     let found = AssetErrors { faults: faults.into_inner() };
     for warning in found.faults.iter().filter(|f| !f.is_error()) {
         tracing::warn!("{warning}");
@@ -72,15 +79,39 @@ fn inside(top: &mut Node) -> Option<&mut Node> {
     entries.iter_mut().find(|e| e.key == "atmosphere").map(|e| &mut e.value)
 }
 
-fn name_model(air: &mut Node, word: &str) {
-    let at = air.at.clone();
-    let Data::Table(entries) = &mut air.data else { return };
-    entries.retain(|e| e.key != "model");
-    let value = Node { at: at.clone(), data: Data::Text(word.to_owned()) };
-    entries.push(Entry { key: "model".to_owned(), key_at: at, value });
+/// The star's wavelengths, where they fall as red, green and blue do: then an air that names none is given at them.
+fn falling(top: &Node) -> Option<Data> {
+    let list = &top.get("star")?.value.get("wavelengths_nm")?.value.data;
+    let Data::Array(nodes) = list else { return None };
+    let numbers: Vec<f64> = nodes.iter().filter_map(|n| if let Data::Number(x) = n.data { Some(x) } else { None }).collect();
+    (numbers.len() == 3 && numbers.windows(2).all(|w| w[0] > w[1] + 1.0)).then(|| list.clone())
 }
 
-/// `folder` is where the files lie that its air names.
+/// Puts a value into the table of an air, in place of what is there.
+fn put(air: &mut Node, key: &str, data: Data) {
+    let at = air.at.clone();
+    let Data::Table(entries) = &mut air.data else { return };
+    entries.retain(|e| e.key != key);
+    let value = Node { at: at.clone(), data };
+    entries.push(Entry { key: key.to_owned(), key_at: at, value });
+}
+
+/// The air at the star's wavelengths: three numbers of a file that names no wavelengths are those of the star, in its order.
+fn at_star(spec: AirSpec, star: &Star, named: bool, r: &Reader<'_>) -> Option<Air> {
+    let (mut air, by_wavelength) = (spec.look?, spec.by_wavelength?);
+    if !by_wavelength.is_channels() || named {
+        if !named {
+            r.wrong(
+                "star.wavelengths_nm",
+                "`star.wavelengths_nm`: expected falling wavelengths, as red, green and blue, for an air of physical inputs",
+            );
+        }
+        air.medium = by_wavelength.medium_at(star.wavelengths_nm.map(|nm| nm * NM));
+        air.medium.layers.iter_mut().for_each(|l| l.phase = l.phase.normalised());
+    }
+    Some(air)
+}
+
 fn read(r: Reader<'_>, elsewhere: Option<&Node>, folder: &Path, faults: &Faults) -> Option<Planet> {
     let radius_m = r.number("radius_km", POSITIVE) * KM;
     let star = r.table("star").map(|t| {
@@ -100,17 +131,20 @@ fn read(r: Reader<'_>, elsewhere: Option<&Node>, folder: &Path, faults: &Faults)
     // Nothing is dragged here: gravity only serves the plausibility of `[physics]`, and stands for Earth's.
     let gm_m3_s2 = 9.8 * radius_m * radius_m;
     let datum = Datum::new(gm_m3_s2, radius_m);
-    let overlay = Overlay::new(folder, &[]);
-    let setting = Setting { overlay: &overlay, folder: ".", star: &Starlight::default() };
-    let air = match elsewhere {
+    let beside = |name: &str| Some(folder.join(name)).filter(|p| p.is_file());
+    let star_light = Starlight::default();
+    let setting = Setting { beside: &beside, star: &star_light };
+    let (spec, named) = match elsewhere {
         Some(node) => {
             r.text("atmosphere");
-            read_air(&Reader::new(node, faults), datum, &setting)
+            (read_air(&Reader::new(node, faults), datum, &setting), node.get("wavelengths_nm").is_some())
         }
-        None => r.table("atmosphere").map(|t| read_air(&t, datum, &setting)).unwrap_or_default(),
+        None => r.table("atmosphere").map(|t| (read_air(&t, datum, &setting), t.has("wavelengths_nm"))).unwrap_or_default(),
     };
+    let star = star?;
+    let air = at_star(spec, &star, named, &r);
     r.finish();
-    Some(Planet { star: star?, air: air.look? })
+    Some(Planet { star, air: air? })
 }
 
 #[cfg(test)]
@@ -149,6 +183,30 @@ mod tests {
         let planet = read_planet(&path, Some("physical")).unwrap();
         assert!(matches!(planet.air.model, Model::Physical(_)));
         assert_eq!(planet.air.medium, super::tests::planet(EARTH, None).unwrap().air.medium);
+    }
+
+    #[test]
+    fn the_air_is_taken_at_the_stars_wavelengths() {
+        let scattering = |text: &str| planet(text, None).unwrap().air.medium.layers[0].scattering_per_m;
+        // Three numbers are the star's channels, in whatever order it has them.
+        let turned = EARTH.replace("[680.0, 550.0, 440.0]", "[440.0, 550.0, 680.0]");
+        assert_eq!(scattering(&turned), scattering(EARTH));
+        // An air given at other wavelengths is carried to the star's: by a power law, λ⁻⁴.
+        let named = EARTH
+            .replace("top_altitude_m", "wavelengths_nm = [680.0, 550.0, 440.0]\ntop_altitude_m")
+            .replace("[680.0, 550.0, 440.0]\nirr", "[600.0, 550.0, 500.0]\nirr");
+        let red = f64::from(scattering(&named).x);
+        assert!((red / (1.24062e-6 / 0.6_f64.powi(4)) - 1.0).abs() < 1e-4, "{red}");
+        // Physical inputs are reckoned at the star's wavelengths, and need them to fall.
+        let (head, rest) = EARTH.split_once("scattering_per_m").unwrap();
+        let after = rest.split_once("# Aerosol.").unwrap().1;
+        let gas = "gas = { molecules = { air = 1.0 }, pressure_pa = 101325.0, temperature_k = 288.15, scale_height_m = 8000.0 }";
+        let gas = format!("{head}{gas}\n{after}");
+        for channel in 0..3 {
+            assert!((scattering(&gas)[channel] / scattering(EARTH)[channel] - 1.0).abs() < 0.1);
+        }
+        let turned = gas.replace("[680.0, 550.0, 440.0]", "[440.0, 550.0, 680.0]");
+        assert!(planet(&turned, None).unwrap_err().text().contains("falling"));
     }
 
     #[test]

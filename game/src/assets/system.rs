@@ -2,28 +2,24 @@
 
 use super::atmosphere::{AirSpec, Datum, Setting, read_air};
 use super::body::{BodySpec, read_body};
-use super::fault::{AssetErrors, At, Fault, nearest};
+use super::fault::{AssetErrors, Fault, nearest};
+use super::listing::{Top, read_listed, read_top, tell_orphans};
 use super::overlay::{Overlay, read_text};
-use super::reader::{Faults, POSITIVE, Reader, count_errors};
+use super::reader::{Faults, Reader, count_errors};
 use super::relief::load_maps;
 use super::tree::{Data, Node, parse};
 use crate::world::system::{Body, System};
 use engine::light::spectrum::Starlight;
 use engine::orbit::BodyId;
-use engine::orbit::State;
 use engine::orbit::ephemeris::{Details, Ephemeris, EphemerisError, Mass, Orbit, Path as OrbitPath};
-use engine::space::{Position, Velocity};
 use engine::terrain::Relief;
-use engine::units::{KM, KM3_S2};
+use engine::units::KM;
 use glam::DVec3;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
-
-/// Bodies that a system may have.
-const BODIES_MAX: usize = 4096;
 
 /// Loads `systems/<key>`; `progress` hears how much is done, 0 … 1, and of what.
 pub fn load_system(overlay: &Overlay, key: &str, progress: &(dyn Fn(f32, &str) + Sync)) -> Result<Arc<System>, AssetErrors> {
@@ -169,59 +165,6 @@ pub fn reread_airs(overlay: &Overlay, system: &System) -> Result<Arc<System>, As
     }))
 }
 
-/// What `system.toml` says.
-struct Top {
-    name: String,
-    /// Keys of the bodies, and where each is listed. Sorted: their order in the file makes no difference.
-    bodies: BTreeMap<String, At>,
-    masses: Vec<(String, Mass)>,
-}
-
-fn read_top(r: Reader<'_>, hash: &mut blake3::Hasher) -> Top {
-    let name = r.text("name");
-    r.maybe_text("description");
-    let mut bodies = BTreeMap::new();
-    for (key, at) in r.texts("bodies") {
-        if !key.chars().all(|c| c.is_alphanumeric() || c == '_' || c == '-') {
-            r.fault(Fault::at(&at, format!("`bodies`: \"{key}\": expected the name of a folder in `bodies`")));
-        } else if bodies.insert(key.clone(), at.clone()).is_some() {
-            r.fault(Fault::at(&at, format!("`bodies`: \"{key}\" is listed twice: expected each body once")));
-        }
-    }
-    if bodies.len() > BODIES_MAX {
-        r.wrong("bodies", format!("`bodies`: {} of them: expected 1 to {BODIES_MAX}", bodies.len()));
-    }
-    digest(r.node, &["name", "description", "bodies"], hash);
-    let masses: Vec<(String, Mass)> = r.tables("masses").into_iter().map(read_mass).collect();
-    r.finish();
-    Top { name, bodies, masses }
-}
-
-/// The tree of a body that a system lists; where there is no such body, that is told at the list.
-fn read_listed(overlay: &Overlay, body: &str, at: &At, faults: &Faults) -> Option<Node> {
-    let relative = format!("bodies/{body}/body.toml");
-    if overlay.find(&relative).is_none() {
-        let known = bodies(overlay);
-        let message = format!("`bodies`: there is no body \"{body}\": expected its file {}", overlay.expected(&relative).display());
-        faults.borrow_mut().push(Fault::at(at, message).help(nearest(body, known.iter().map(String::as_str))));
-        return None;
-    }
-    read_tree(overlay, &relative, "the body", faults)
-}
-
-/// The bodies that there are.
-pub fn bodies(overlay: &Overlay) -> Vec<String> {
-    let exists = |name: &String| overlay.find(format!("bodies/{name}/body.toml")).is_some();
-    overlay.names("bodies", None).into_iter().filter(exists).collect()
-}
-
-/// Whether a system lists a body; `false` too where its file cannot be read.
-pub fn lists(overlay: &Overlay, system: &str, body: &str) -> bool {
-    let tree = read_tree(overlay, &format!("systems/{system}/system.toml"), "", &Faults::default());
-    let Some(Data::Array(list)) = tree.as_ref().and_then(|t| t.get("bodies")).map(|e| &e.value.data) else { return false };
-    list.iter().any(|item| item.text() == Some(body))
-}
-
 /// The files of a body that no system lists, checked without the bodies around it; what is hardly meant comes back.
 pub fn load_body(overlay: &Overlay, key: &str) -> Result<Vec<String>, AssetErrors> {
     let faults = Faults::default();
@@ -251,31 +194,6 @@ pub fn load_air(overlay: &Overlay, key: &str, star: &Starlight) -> Result<AirSpe
     AssetErrors { faults: faults.into_inner() }.or(air)
 }
 
-/// Patches of what is not there, also in folders that no system lists.
-fn tell_orphans(overlay: &Overlay, faults: &Faults) {
-    let known = bodies(overlay);
-    for body in overlay.names("bodies", None) {
-        for file in ["body.toml", "atmosphere.toml"] {
-            let relative = format!("bodies/{body}/{file}");
-            let there = overlay.find(&relative);
-            for patch in overlay.orphans(&relative) {
-                let fault = match &there {
-                    Some(above) => Fault::file(&patch, format!("it changes nothing: {} lies above it and replaces all", above.display()))
-                        .help(Some(
-                            "expected a patch in the same mod or in a later one: mods lie in the order in which they are named".to_owned(),
-                        )),
-                    None => Fault::file(
-                        &patch,
-                        format!("there is no `{relative}` that it could change: expected one in the assets or in a mod"),
-                    )
-                    .help(nearest(&body, known.iter().map(String::as_str))),
-                };
-                faults.borrow_mut().push(fault);
-            }
-        }
-    }
-}
-
 /// The air of a body: a file of its own, without which there is none. The second value is the hash of what drags in it: the look is no
 /// part of a flight.
 fn read_atmosphere(overlay: &Overlay, body: &str, datum: Datum, star: &Starlight, faults: &Faults) -> (AirSpec, String) {
@@ -289,28 +207,16 @@ fn read_atmosphere(overlay: &Overlay, body: &str, datum: Datum, star: &Starlight
         physics.value.digest(&mut hash);
     }
     (
-        read_air(&Reader::new(&tree, faults), datum, &Setting { overlay, folder: &format!("bodies/{body}"), star }),
+        read_air(&Reader::new(&tree, faults), datum, &Setting { beside: &|name| overlay.find(format!("bodies/{body}/{name}")), star }),
         hash.finalize().to_hex().to_string(),
     )
 }
 
 /// Feeds a file's values to the hash, but for what a flight does not depend on.
-fn digest(tree: &Node, seen_only: &[&str], hash: &mut blake3::Hasher) {
+pub fn digest(tree: &Node, seen_only: &[&str], hash: &mut blake3::Hasher) {
     let Data::Table(entries) = &tree.data else { return };
     let entries = entries.iter().filter(|e| !seen_only.contains(&e.key.as_str())).cloned().collect();
     Node { at: tree.at.clone(), data: Data::Table(entries) }.digest(hash);
-}
-
-fn read_mass(r: Reader<'_>) -> (String, Mass) {
-    let name = r.text("name");
-    let gm_m3_s2 = r.number("gm_km3_s2", POSITIVE) * KM3_S2;
-    let vector = |key, range| DVec3::from_array(r.numbers::<3>(key, range)) * KM;
-    let state = State {
-        position: Position::new(vector("position_km", -1e12..=1e12)),
-        velocity: Velocity::new(vector("velocity_km_s", -3e5..=3e5)),
-    };
-    r.finish();
-    (name, Mass { gm_m3_s2, state })
 }
 
 /// The star first, then depth first: each body by its distance from its parent, its moons behind it. `None` where the tree

@@ -19,7 +19,7 @@ fn every_subcommand_shows_an_example() {
         assert!(path.ends_with("help") || help.contains("Example"), "{path}: {help}");
         // What an example says is taken by the program, and the starts that it names are there.
         for line in help.lines().filter(|l| l.starts_with("  syzygy ")) {
-            let words: Vec<&str> = line.split("    ").next().unwrap_or(line).split_whitespace().skip(1).collect();
+            let words: Vec<&str> = line.split("    ").next().unwrap_or(line).split_whitespace().skip(1).take_while(|w| *w != ">").collect();
             cli(&words).unwrap_or_else(|e| panic!("{line}: {e}"));
             for pair in words.windows(2).filter(|pair| pair[0] == "--start") {
                 let start = format!("{}/../assets/starts/{}.toml", env!("CARGO_MANIFEST_DIR"), pair[1]);

@@ -54,6 +54,10 @@ macro_rules! controls {
         impl Control {
             /// All, in the order in which they are shown.
             pub const ALL: &'static [Self] = &[$(Self::$variant),*];
+            /// Whether it is heard while a panel has the keys too.
+            pub const fn is_heard_in_panels(self) -> bool {
+                matches!(self, Self::Pause | Self::Help | Self::Photo | Self::EditAir | Self::HideHud | Self::SavePicture)
+            }
             /// What the player reads.
             pub const fn label(self) -> &'static str {
                 match self { $(Self::$variant => $label),* }

@@ -252,11 +252,7 @@ impl Input {
             return;
         }
         for control in Control::ALL {
-            let heard = matches!(self.focus, Focus::Flight | Focus::Camera)
-                || matches!(
-                    control,
-                    Control::Pause | Control::Help | Control::Photo | Control::EditAir | Control::HideHud | Control::SavePicture
-                );
+            let heard = matches!(self.focus, Focus::Flight | Focus::Camera) || control.is_heard_in_panels();
             if heard && self.bindings.sources(*control).contains(&source) {
                 self.queued.push(*control);
             }

@@ -129,12 +129,13 @@ impl System {
             eclipses: Almanac::default(),
         }
     }
-    /// The same with another look of a body's air.
+
+    /// The same with another look of a body's air, and other banks of fog.
     #[must_use]
-    pub fn with_look(&self, body: BodyId, look: Option<Air>) -> Self {
+    pub fn with_look(&self, body: BodyId, look: Option<Air>, fog: Vec<Fog>) -> Self {
         let mut new = self.clone();
         if let Some(body) = new.bodies.get_mut(body.index()) {
-            body.look = look;
+            (body.look, body.fog) = (look, fog);
         }
         new
     }

@@ -111,13 +111,13 @@ impl Medium {
         let mut all: Vec<(f64, f64)> = Vec::new();
         for layer in &self.layers {
             let strength = f64::from((layer.scattering_per_m + layer.absorption_per_m).max_element());
+            let peak = layer.profile.breaks_m().into_iter().map(|h| layer.profile.density(h)).fold(0.0, f64::max);
             for h in layer.profile.breaks_m().into_iter().filter(|h| *h > 0.0 && *h < self.top_altitude_m) {
                 // A table's steep rise within a few metres is a jump to a march as well.
                 let reach = 1e-4 * self.top_altitude_m;
-                let jump = strength * (layer.profile.density(h + reach) - layer.profile.density(h - reach)).abs();
-                let around = strength * layer.profile.density(h + reach).max(layer.profile.density(h - reach));
-                if jump > 0.2 * around {
-                    all.push((jump, h));
+                let jump = (layer.profile.density(h + reach) - layer.profile.density(h - reach)).abs();
+                if jump > 0.05 * peak {
+                    all.push((strength * jump, h));
                 }
             }
         }

@@ -120,7 +120,7 @@ impl LimbTable {
     pub fn validate(&self) -> Vec<RangeError> {
         let mut e = Vec::new();
         RangeError::check(&mut e, "size", f64::from(self.size), 8.0, 1024.0);
-        if self.size % 2 != 0 {
+        if !self.size.is_multiple_of(2) {
             e.push(RangeError { field: "size".into(), found: f64::from(self.size), expected: "an even number".into() });
         }
         for (i, x) in self.light_scale_per_sr.to_array().into_iter().enumerate() {

@@ -66,7 +66,7 @@ impl SunMap {
     /// For the air of a medium.
     pub fn new(medium: &Medium) -> Self {
         let (sine, cosine) = dip(medium.bottom_radius_m, medium.top_altitude_m);
-        let scale = 1.0 / (0.25 * libm::atan2(sine, cosine)).max(0.01);
+        let scale = 1.0 / (0.35 * libm::atan2(sine, cosine)).max(0.01);
         let low = libm::asinh(core::f64::consts::SQRT_2 * scale);
         let high = libm::asinh((2.0 * (1.0 + sine)).sqrt() * scale);
         Self { scale, low, inverse: 1.0 / (low + high) }
@@ -320,7 +320,8 @@ mod tests {
                 let at = KERNELS_AT + (altitude * VIEWS + view) * DIRECTIONS * 3;
                 for c in 0..3 {
                     let sum: f32 = (0..DIRECTIONS).map(|d| plan.rows[at + d * 3 + c][0]).sum();
-                    assert!((sum - 1.0).abs() < 1e-4, "row {altitude}, view {view}: {sum}");
+                    // The haze's peak is narrower than the directions are apart.
+                    assert!((sum - 1.0).abs() < 2e-3, "row {altitude}, view {view}: {sum}");
                 }
             }
         }
@@ -328,7 +329,7 @@ mod tests {
             let (x, y) = (legendre(a), legendre(b));
             // By the addition theorem at φ = 0 and up to degree 3, where no mode is missing.
             let turn: f64 = (0..4).map(|l| (0..MODES).map(|m| x[m][l] * y[m][l] * if m > 0 { 2.0 } else { 1.0 }).sum::<f64>()).sum();
-            let cos = a * b + ((1.0 - a * a) * (1.0 - b * b) as f64).sqrt();
+            let cos = a * b + ((1.0 - a * a) * (1.0 - b * b)).sqrt();
             let p = [1.0, cos, 0.5 * (3.0 * cos * cos - 1.0), 0.5 * (5.0 * cos * cos * cos - 3.0 * cos)];
             let series: f64 = p.iter().enumerate().map(|(l, p)| (2 * l + 1) as f64 / (4.0 * PI) * p).sum();
             assert!((turn - series).abs() < 1e-12, "{turn} {series}");

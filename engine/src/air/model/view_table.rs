@@ -189,9 +189,9 @@ impl ViewTable {
             ("ambient_samples", self.ambient_samples, 2.0, 128.0),
         ];
         for (key, found, min, max) in ranges {
-            RangeError::check(&mut e, &key, f64::from(found), min, max);
+            RangeError::check(&mut e, key, f64::from(found), min, max);
         }
-        if self.view_size % 2 != 0 {
+        if !self.view_size.is_multiple_of(2) {
             let (found, expected) = (f64::from(self.view_size), "an even number".into());
             e.push(RangeError { field: "view_size".into(), found, expected });
         }

@@ -25,12 +25,12 @@ use glam::DVec3;
 use random::{Draw, Random, Sequence};
 use rayon::prelude::*;
 use space::{Light, Space, exp3, ground_under};
-use walk::{Glow, Walk};
+use walk::{Glow, Walk, upward};
 
 pub use single::{optical_depth, transmittance_to_top};
 pub use space::{Span, Sphere, span};
 
-/// Walks of one batch, and batches that are made before the error is looked at again.
+/// Walks of one batch, and batches that are made before the error is looked at again, unless fewer are allowed.
 const BATCH: u32 = 512;
 const ROUND: u64 = 16;
 
@@ -68,6 +68,13 @@ pub struct Options {
     pub seed: u64,
     /// Relative error of single scattering.
     pub single_error: f64,
+}
+
+impl Options {
+    /// Batches of a round: two at least, for an error.
+    fn round(&self) -> u64 {
+        (self.max_walks / u64::from(BATCH)).clamp(2, ROUND)
+    }
 }
 
 impl Default for Options {
@@ -129,14 +136,63 @@ fn one(medium: &Medium, space: &Space, ray: &Ray, options: &Options, index: u64)
     Estimate { total: single + more, single, std_error, transmittance }
 }
 
+/// Illuminance by the sky on level ground under a point, per unit of solar irradiance above the air; the direct sun is left out. `ray.from_m`
+/// says where (its height does not matter), `ray.sun`, `sun_rad` and `occluders` what lights the sky. With its standard error.
+pub fn sky_irradiance(medium: &Medium, ray: &Ray, options: &Options) -> (DVec3, DVec3) {
+    let up = ray.from_m.normalize_or(DVec3::Z);
+    let space = Space::new(medium, up * medium.bottom_radius_m);
+    let (light, at) = (ray.light(), up * space.ground_m);
+    let batch = |number: u64| {
+        let key = [options.seed, u64::MAX, number];
+        let glow = Glow::of(&light, at);
+        let sequence = Sequence::new(&mut Random::new(&key));
+        let mut sum = DVec3::ZERO;
+        for i in 0..BATCH {
+            let mut draw = Draw::new(sequence.point(i), Random::new(&[key[0], key[1], key[2], u64::from(i)]));
+            let hero = [0, 1, 2][i as usize % 3];
+            let walk =
+                Walk { at, direction: upward(up, &mut draw), weight: DVec3::splat(core::f64::consts::PI), density: DVec3::ONE, hero };
+            walk.run(&space, &light, glow.as_ref(), &mut draw, &mut |_, radiance| sum += radiance);
+        }
+        sum / f64::from(BATCH)
+    };
+    settle(options, DVec3::ZERO, |number| (0..options.round()).into_par_iter().map(|b| batch(number * ROUND + b)).collect())
+}
+
+/// Radiance of each order by itself, the first to the `orders`-th, with its standard error: walks for all orders but the first.
+/// Order n is light that has met air or ground n times.
+pub fn radiance_by_order(medium: &Medium, ray: &Ray, orders: usize, walks: u64, seed: u64) -> Vec<(DVec3, DVec3)> {
+    let mut out = vec![(DVec3::ZERO, DVec3::ZERO); orders];
+    let Some(span) = span(medium, ray.from_m, ray.direction) else { return out };
+    let space = Space::new(medium, ray.from_m);
+    let light = ray.light();
+    if let Some(first) = out.first_mut() {
+        first.0 = single::single_scattering(medium, &space, &light, (ray.from_m, ray.direction), span, 1e-6);
+    }
+    let Some(starts) = Starts::new(medium, &space, &light, ray.from_m, ray.direction, span) else { return out };
+    let batches = walks.div_ceil(u64::from(BATCH)).max(2);
+    let all: Vec<Vec<DVec3>> =
+        (0..batches).into_par_iter().map(|b| batch(&space, &light, ray.direction, &starts, [seed, 0, 0, b], orders).by_order).collect();
+    let n = batches as f64;
+    for (order, slot) in out.iter_mut().enumerate().skip(1) {
+        let of = |b: &Vec<DVec3>| b.get(order).copied().unwrap_or_default();
+        let mean = all.iter().map(of).sum::<DVec3>() / n;
+        let squares = all.iter().map(|b| (of(b) - mean) * (of(b) - mean)).sum::<DVec3>();
+        *slot = (mean, root(squares / (n * (n - 1.0))));
+    }
+    out
+}
+
 /// A batch: the mean over its walks, and what each stratum brought squared.
 struct Batch {
     mean: DVec3,
+    /// The means of the orders that were asked for.
+    by_order: Vec<DVec3>,
     squares: [DVec3; STRATA],
 }
 
-fn batch(space: &Space, light: &Light<'_>, direction: DVec3, starts: &Starts, key: [u64; 4]) -> Batch {
-    let mut out = Batch { mean: DVec3::ZERO, squares: [DVec3::ZERO; STRATA] };
+fn batch(space: &Space, light: &Light<'_>, direction: DVec3, starts: &Starts, key: [u64; 4], orders: usize) -> Batch {
+    let mut out = Batch { mean: DVec3::ZERO, by_order: vec![DVec3::ZERO; orders], squares: [DVec3::ZERO; STRATA] };
     let sequence = Sequence::new(&mut Random::new(&key));
     let glow = Glow::of(light, starts.middle());
     for i in 0..BATCH {
@@ -146,7 +202,14 @@ fn batch(space: &Space, light: &Light<'_>, direction: DVec3, starts: &Starts, ke
         let hero = [0, 1, 2][i as usize % 3];
         let mut walk = Walk { at: start.at, direction, weight: start.weight, density: DVec3::ONE, hero };
         walk.scatter(space, glow.as_ref(), &mut draw);
-        walk.run(space, light, glow.as_ref(), &mut draw, &mut |_, radiance| sum += radiance);
+        let by_order = &mut out.by_order;
+        // The start is the first meeting, and the walk counts from its next.
+        walk.run(space, light, glow.as_ref(), &mut draw, &mut |n, radiance| {
+            sum += radiance;
+            if let Some(slot) = by_order.get_mut(n) {
+                *slot += radiance / f64::from(BATCH);
+            }
+        });
         out.mean += sum / f64::from(BATCH);
         out.squares[start.stratum] += sum * sum;
     }
@@ -165,11 +228,11 @@ fn further(
 ) -> (DVec3, DVec3) {
     let round = |starts: &Starts, number: u64| -> Vec<Batch> {
         let key = |b: u64| [options.seed, index, number, b];
-        (0..ROUND).into_par_iter().map(|b| batch(space, light, ray.direction, starts, key(b))).collect()
+        (0..options.round()).into_par_iter().map(|b| batch(space, light, ray.direction, starts, key(b), 0)).collect()
     };
     // The pilot only says where light comes from; it is not part of the answer.
     let pilot = round(&starts, 0);
-    let mean: DVec3 = pilot.iter().map(|b| b.mean).sum::<DVec3>() / ROUND as f64;
+    let mean: DVec3 = pilot.iter().map(|b| b.mean).sum::<DVec3>() / options.round() as f64;
     let scale = (mean + single).max(DVec3::splat(f64::MIN_POSITIVE));
     let mut factors = [0.0; STRATA];
     for (k, factor) in factors.iter_mut().enumerate() {
@@ -181,22 +244,30 @@ fn further(
         factors.iter_mut().for_each(|f| *f += 0.2 * typical);
         starts.weigh(&factors);
     }
+    settle(options, single, |number| round(&starts, number).into_iter().map(|b| b.mean).collect())
+}
+
+/// Makes rounds of batches, from number 1, until the error of their mean is as wanted; `known` is what the radiance has besides.
+fn settle(options: &Options, known: DVec3, round: impl Fn(u64) -> Vec<DVec3>) -> (DVec3, DVec3) {
     let (mut sum, mut squares, mut batches) = (DVec3::ZERO, DVec3::ZERO, 0.0);
     for number in 1.. {
-        for b in round(&starts, number) {
-            sum += b.mean;
-            squares += b.mean * b.mean;
+        for mean in round(number) {
+            sum += mean;
+            squares += mean * mean;
             batches += 1.0;
         }
         let mean = sum / batches;
-        let variance = (squares / batches - mean * mean).max(DVec3::ZERO) / (batches - 1.0);
-        let std_error = DVec3::new(variance.x.sqrt(), variance.y.sqrt(), variance.z.sqrt());
-        let wanted = ((mean + single) * options.rel_error).max(DVec3::splat(options.abs_error));
-        if std_error.cmple(wanted).all() || number * ROUND * u64::from(BATCH) >= options.max_walks {
+        let std_error = root((squares / batches - mean * mean).max(DVec3::ZERO) / (batches - 1.0));
+        let wanted = ((mean + known) * options.rel_error).max(DVec3::splat(options.abs_error));
+        if std_error.cmple(wanted).all() || number * options.round() * u64::from(BATCH) >= options.max_walks {
             return (mean, std_error);
         }
     }
     (DVec3::ZERO, DVec3::ZERO)
+}
+
+fn root(v: DVec3) -> DVec3 {
+    DVec3::new(v.x.sqrt(), v.y.sqrt(), v.z.sqrt())
 }
 
 #[cfg(test)]

@@ -25,7 +25,7 @@ const KRONROD: [f64; 8] = [
     0.204_432_940_075_298_9,
     0.209_482_141_084_727_83,
 ];
-const GAUSS: [f64; 4] = [0.129_484_966_168_869_7, 0.279_705_391_489_276_64, 0.381_830_050_505_118_93, 0.417_959_183_673_469_4];
+const GAUSS: [f64; 4] = [0.129_484_966_168_869_7, 0.279_705_391_489_276_64, 0.381_830_050_505_118_9, 0.417_959_183_673_469_4];
 
 /// Panels after which an integral is taken as it is: one with so many kinks is beyond what is asked of it.
 const MAX_PANELS: usize = 3000;
@@ -85,6 +85,6 @@ mod tests {
         let peak = integrate(&mut |x: f64| DVec3::splat((-1e6 * (x - 0.37) * (x - 0.37)).exp()), &[0.0, 0.4, 1.0], 1e-9);
         assert!((peak.x / (core::f64::consts::PI / 1e6).sqrt() - 1.0).abs() < 1e-9);
         assert_eq!(integrate(&mut |_| DVec3::ONE, &[], 1e-3), DVec3::ZERO);
-        assert_eq!(integrate(&mut |_| DVec3::NAN, &[0.0, 1.0], 1e-3).is_nan(), true);
+        assert!(integrate(&mut |_| DVec3::NAN, &[0.0, 1.0], 1e-3).is_nan());
     }
 }

@@ -8,8 +8,8 @@
 //! fitting rays, each weighed by its own luminance, with a pull ([`PULL`]) towards the start that keeps the weights small, and with the
 //! sums of the weights held at 1: no air, no change. As scattering is linear in the light, further orders take the same weights.
 //!
-//! The six wavelengths were found by descent over six airs (Earth, Mars, Venus, Titan, Earth in haze, a green one) under the Sun: the mean ΔE2000 is flat
-//! about them, and the same six serve all. [`super::study`] has the figures.
+//! The six wavelengths too are the air's own: from six that serve most airs ([`START_NM`]) each moves, a step at a time, as long as what
+//! is left of the least squares falls. An absorber of narrow bands, such as methane, needs that. [`super::study`] has the figures.
 
 use super::rays::{Met, fitting};
 use super::{Coefficients, SpectralMedium};
@@ -19,8 +19,12 @@ use crate::units::NM;
 use glam::{DMat3, DVec3};
 use serde::{Deserialize, Serialize};
 
-/// The six wavelengths, nm: [`Bands::media`] has the red, green, blue of the one triple and of the other.
-pub const BANDS_NM: [[f64; 3]; 2] = [[676.0, 566.0, 470.0], [612.0, 522.0, 432.0]];
+/// The six wavelengths from which the search sets out, nm.
+const START_NM: [f64; N] = [434.0, 470.0, 524.0, 566.0, 614.0, 674.0];
+/// Strides by which the search moves a band, first the long ones.
+const MOVES: [usize; 3] = [4, 2, 1];
+/// Times that all bands are tried by one length of move.
+const ROUNDS: usize = 6;
 /// Weight of the start in the least squares, where a ray weighs 1.
 const PULL: f64 = 1e-4;
 /// Samples along a ray that is fitted.
@@ -35,7 +39,9 @@ const N: usize = 6;
 /// A medium in six bands.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Bands {
-    /// Two media whose channels are the wavelengths of [`BANDS_NM`].
+    /// Wavelengths of the channels of the two media, nm, falling; they take turns.
+    pub wavelengths_nm: [[f64; 3]; 2],
+    /// The two media.
     pub media: [Medium; 2],
     /// From the channels of each to linear sRGB, per unit of the star's channel; the two add up. Rows of both together sum to 1.
     pub to_rgb: [DMat3; 2],
@@ -54,38 +60,111 @@ pub fn channel_weights(star: &Spectrum) -> Vec<DVec3> {
     (0..COUNT).map(|i| DVec3::new(channel(i, 0), channel(i, 1), channel(i, 2))).collect()
 }
 
-/// What the rays bring: at single wavelengths, and in linear sRGB by all of them.
+/// What the rays bring (radiance of each, then transmittance of each): at single wavelengths, and in linear sRGB by all of them.
 struct Truth {
-    met: Vec<Met>,
+    /// Wavelengths, nm.
+    nm: Vec<f64>,
+    /// Share of each in each channel.
+    shares: Vec<DVec3>,
+    /// By wavelength and ray.
+    light: Vec<Vec<f64>>,
+    /// By ray.
     rgb: Vec<DVec3>,
+    /// One over the luminance of each; 0 for dark ones.
+    weights: Vec<f64>,
 }
 
 impl Truth {
     fn new(medium: &SpectralMedium, star: &Spectrum) -> Self {
-        let weights = channel_weights(star);
+        let all = channel_weights(star);
         let chosen: Vec<usize> = (0..COUNT).step_by(STRIDE).collect();
-        let total: DVec3 = chosen.iter().map(|i| weights[*i]).sum();
-        let coefficients = medium.at(&chosen.iter().map(|i| wavelength_nm(*i) * NM).collect::<Vec<_>>());
+        let total: DVec3 = chosen.iter().map(|i| all[*i]).sum();
+        let shares: Vec<DVec3> = chosen.iter().map(|i| all[*i] / total).collect();
+        let nm: Vec<f64> = chosen.into_iter().map(wavelength_nm).collect();
         let met: Vec<Met> = fitting(medium).into_iter().filter_map(|ray| Met::trace(medium, ray, SAMPLES)).collect();
-        let sum = |m: &Met| -> [DVec3; 2] {
-            let parts = coefficients.iter().zip(&chosen).map(|(at, i)| [weights[*i] * m.radiance(at), weights[*i] * m.transmittance(at)]);
-            parts.fold([DVec3::ZERO; 2], |a, b| [a[0] + b[0], a[1] + b[1]]).map(|x| x / total)
-        };
-        let pairs: Vec<[DVec3; 2]> = met.iter().map(sum).collect();
-        let rgb = pairs.iter().map(|p| p[0]).chain(pairs.iter().map(|p| p[1])).collect();
-        Self { met, rgb }
-    }
-
-    /// The same rays at one wavelength.
-    fn at(&self, coefficients: &Coefficients) -> Vec<f64> {
-        let radiance = self.met.iter().map(|m| m.radiance(coefficients));
-        radiance.chain(self.met.iter().map(|m| m.transmittance(coefficients))).collect()
-    }
-
-    /// One over the luminance of each ray; 0 for dark ones.
-    fn weights(&self) -> Vec<f64> {
+        let at_one =
+            |at: &Coefficients| met.iter().map(|m| m.radiance(at)).chain(met.iter().map(|m| m.transmittance(at))).collect::<Vec<f64>>();
+        let light: Vec<Vec<f64>> = medium.at(&nm.iter().map(|nm| nm * NM).collect::<Vec<_>>()).iter().map(at_one).collect();
+        let sum = |ray: usize| light.iter().zip(&shares).map(|(light, share)| *share * light[ray]).sum::<DVec3>();
+        let rgb: Vec<DVec3> = (0..2 * met.len()).map(sum).collect();
         let luminance = xyz_from_rgb().row(1);
-        self.rgb.iter().map(|rgb| luminance.dot(*rgb)).map(|y| if y > DARK { 1.0 / y } else { 0.0 }).collect()
+        let weights = rgb.iter().map(|rgb| luminance.dot(*rgb)).map(|y| if y > DARK { 1.0 / y } else { 0.0 }).collect();
+        Self { nm, shares, light, rgb, weights }
+    }
+
+    /// The wavelength next to one.
+    fn nearest(&self, nm: f64) -> usize {
+        (0..self.nm.len()).min_by(|a, b| (self.nm[*a] - nm).abs().total_cmp(&(self.nm[*b] - nm).abs())).unwrap_or(0)
+    }
+
+    /// Each wavelength of the star's light shared by the two bands beside it: the weights before the fit.
+    fn start(&self, bands: &[usize; N]) -> [DVec3; N] {
+        let mut out = [DVec3::ZERO; N];
+        for (i, share) in self.shares.iter().enumerate() {
+            let above = bands.iter().position(|b| *b > i).unwrap_or(N);
+            let t = if above == 0 || above == N { 0.0 } else { (i - bands[above - 1]) as f64 / (bands[above] - bands[above - 1]) as f64 };
+            out[above.saturating_sub(1)] += *share * (1.0 - t);
+            out[above.min(N - 1)] += *share * t;
+        }
+        out
+    }
+
+    /// Least squares for all bands but the last, whose weight is what is left of 1, and what is left of the squares; `None` where there is nothing to
+    /// fit to.
+    fn fit(&self, bands: &[usize; N]) -> Option<([DVec3; N], f64)> {
+        const FREE: usize = N - 1;
+        let start = self.start(bands);
+        let used = self.weights.iter().filter(|w| **w > 0.0).count() as f64;
+        let (mut a, mut b) = ([[PULL; FREE]; FREE], [DVec3::ZERO; FREE]);
+        for j in 0..FREE {
+            a[j][j] += PULL;
+            b[j] = (start[j] - (start[FREE] - DVec3::ONE)) * PULL;
+        }
+        for (i, weight) in self.weights.iter().enumerate().filter(|(_, w)| **w > 0.0) {
+            let last = self.light[bands[FREE]][i];
+            let d: [f64; FREE] = core::array::from_fn(|j| (self.light[bands[j]][i] - last) * weight);
+            let rest = (self.rgb[i] - last) * *weight;
+            for j in 0..FREE {
+                (0..FREE).for_each(|k| a[j][k] += d[j] * d[k] / used);
+                b[j] += rest * (d[j] / used);
+            }
+        }
+        let free = solve(a, b)?;
+        let mut out = [DVec3::ONE; N];
+        for (j, w) in free.into_iter().enumerate() {
+            out[j] = w;
+            out[FREE] -= w;
+        }
+        let pulled: f64 = out.iter().zip(&start).map(|(w, s)| (*w - *s).length_squared()).sum();
+        let left = |(i, weight): (usize, &f64)| {
+            let found: DVec3 = bands.iter().zip(&out).map(|(b, w)| *w * self.light[*b][i]).sum();
+            ((found - self.rgb[i]) * *weight).length_squared()
+        };
+        let left = self.weights.iter().enumerate().filter(|(_, w)| **w > 0.0).map(left).sum::<f64>() / used + PULL * pulled;
+        left.is_finite().then_some((out, left))
+    }
+
+    /// Bands and weights that leave the least.
+    fn search(&self) -> ([usize; N], [DVec3; N]) {
+        let mut bands = START_NM.map(|nm| self.nearest(nm));
+        let Some((mut weights, mut least)) = self.fit(&bands) else { return (bands, self.start(&bands)) };
+        for step in MOVES {
+            for _ in 0..ROUNDS {
+                let before = least;
+                for (band, up) in (0..N).flat_map(|band| [(band, false), (band, true)]) {
+                    let mut tried = bands;
+                    tried[band] = if up { bands[band] + step } else { bands[band].saturating_sub(step) };
+                    let apart = tried.is_sorted_by(|a, b| a < b) && tried[N - 1] < self.nm.len();
+                    if let Some((w, left)) = apart.then(|| self.fit(&tried)).flatten().filter(|(_, left)| *left < least) {
+                        (bands, weights, least) = (tried, w, left);
+                    }
+                }
+                if least >= before {
+                    break;
+                }
+            }
+        }
+        (bands, weights)
     }
 }
 
@@ -97,15 +176,12 @@ pub fn rgb(medium: &SpectralMedium, star: &Spectrum) -> Medium {
 /// For each channel the wavelength whose light comes closest, m.
 pub fn best_wavelengths_m(medium: &SpectralMedium, star: &Spectrum) -> [f64; 3] {
     let truth = Truth::new(medium, star);
-    let weights = truth.weights();
-    let tried: Vec<f64> = (0..COUNT).step_by(STRIDE).map(|i| wavelength_nm(i) * NM).filter(|w| (400e-9..=700e-9).contains(w)).collect();
     let mut best = [(f64::INFINITY, SpectralMedium::WAVELENGTHS_M[0]); 3];
-    for (wavelength_m, at) in tried.iter().zip(medium.at(&tried)) {
-        let light = truth.at(&at);
+    for (nm, light) in truth.nm.iter().zip(&truth.light).filter(|(nm, _)| (400.0..=700.0).contains(*nm)) {
         for (c, best) in best.iter_mut().enumerate() {
-            let error: f64 = (0..light.len()).map(|i| (light[i] - truth.rgb[i][c]) * weights[i]).map(|x| x * x).sum();
+            let error: f64 = (0..light.len()).map(|i| (light[i] - truth.rgb[i][c]) * truth.weights[i]).map(|x| x * x).sum();
             if error < best.0 {
-                *best = (error, *wavelength_m);
+                *best = (error, nm * NM);
             }
         }
     }
@@ -115,12 +191,16 @@ pub fn best_wavelengths_m(medium: &SpectralMedium, star: &Spectrum) -> [f64; 3] 
 impl Bands {
     /// Fits the six bands of a medium under a star's light above the air.
     pub fn new(medium: &SpectralMedium, star: &Spectrum) -> Self {
-        let start = start(star);
-        let weights = fit(medium, star, &start).unwrap_or(start);
-        let columns = |bands: [usize; 3]| DMat3::from_cols(weights[bands[0]], weights[bands[1]], weights[bands[2]]);
-        // BANDS_NM by rising wavelength: the triples take turns.
-        let to_rgb = [columns([5, 3, 1]), columns([4, 2, 0])];
-        Self { media: BANDS_NM.map(|triple| medium.medium_at(triple.map(|nm| nm * NM))), to_rgb }
+        let truth = Truth::new(medium, star);
+        let (bands, weights) = truth.search();
+        // Rising; the two triples take turns.
+        let triples = [[5, 3, 1], [4, 2, 0]];
+        let wavelengths_nm = triples.map(|t| t.map(|i: usize| truth.nm[bands[i]]));
+        Self {
+            wavelengths_nm,
+            media: wavelengths_nm.map(|t| medium.medium_at(t.map(|nm| nm * NM))),
+            to_rgb: triples.map(|[r, g, b]| DMat3::from_cols(weights[r], weights[g], weights[b])),
+        }
     }
 
     /// Linear sRGB, per unit of the star's channel, of what the channels of both media bring.
@@ -129,67 +209,15 @@ impl Bands {
     }
 }
 
-/// The six, rising.
-fn rising_nm() -> [f64; N] {
-    let [a, b] = BANDS_NM;
-    [b[2], a[2], b[1], a[1], b[0], a[0]]
-}
-
-/// Each wavelength of the star's light shared by the two bands beside it: the weights before the fit, per band.
-fn start(star: &Spectrum) -> [DVec3; N] {
-    let bands = rising_nm();
-    let mut out = [DVec3::ZERO; N];
-    for (i, weight) in channel_weights(star).into_iter().enumerate() {
-        let nm = wavelength_nm(i);
-        let above = bands.iter().position(|b| *b > nm).unwrap_or(N);
-        let t = if above == 0 || above == N { 0.0 } else { (nm - bands[above - 1]) / (bands[above] - bands[above - 1]) };
-        out[above.saturating_sub(1)] += weight * (1.0 - t);
-        out[above.min(N - 1)] += weight * t;
-    }
-    out
-}
-
-/// Least squares for all but the last band, whose weight is what is left of 1; `None` where there is nothing to fit to.
-fn fit(medium: &SpectralMedium, star: &Spectrum, start: &[DVec3; N]) -> Option<[DVec3; N]> {
-    const FREE: usize = N - 1;
-    let truth = Truth::new(medium, star);
-    let weights = truth.weights();
-    let used = weights.iter().filter(|w| **w > 0.0).count() as f64;
-    let lights: Vec<Vec<f64>> = medium.at(&rising_nm().map(|nm| nm * NM)).iter().map(|at| truth.at(at)).collect();
-    let (mut a, mut b) = ([[PULL; FREE]; FREE], [DVec3::ZERO; FREE]);
-    for j in 0..FREE {
-        a[j][j] += PULL;
-        b[j] = (start[j] - (start[FREE] - DVec3::ONE)) * PULL;
-    }
-    for (i, weight) in weights.iter().enumerate() {
-        let last = lights[FREE][i];
-        let d: [f64; FREE] = core::array::from_fn(|j| (lights[j][i] - last) * weight);
-        let rest = (truth.rgb[i] - last) * *weight;
-        for j in 0..FREE {
-            (0..FREE).for_each(|k| a[j][k] += d[j] * d[k] / used);
-            b[j] += rest * (d[j] / used);
-        }
-    }
-    let free = solve(a, b)?;
-    let mut out = [DVec3::ONE; N];
-    for (j, w) in free.into_iter().enumerate() {
-        out[j] = w;
-        out[FREE] -= w;
-    }
-    out.iter().all(|w| w.is_finite()).then_some(out)
-}
-
-/// Solves a symmetric positive system by Cholesky's elimination; `None` where it is not.
+/// Solves a symmetric positive system by elimination; `None` where it is not.
 fn solve<const F: usize>(mut a: [[f64; F]; F], mut b: [DVec3; F]) -> Option<[DVec3; F]> {
     for i in 0..F {
         if a[i][i].is_nan() || a[i][i] <= 0.0 {
             return None;
         }
         for j in i + 1..F {
-            let factor = a[j][i] / a[i][i];
-            for k in i..F {
-                a[j][k] -= factor * a[i][k];
-            }
+            let (factor, above) = (a[j][i] / a[i][i], a[i]);
+            a[j].iter_mut().zip(above).for_each(|(x, above)| *x -= factor * above);
             let above = b[i];
             b[j] -= above * factor;
         }

@@ -3,7 +3,7 @@
 //! A [`SpectralMedium`] knows its coefficients at every wavelength: from molecules and dust ([`super::optics`]), from a table, or, where a
 //! file gives three numbers, by a power law through them. A frame cannot integrate 216 wavelengths; it draws
 //! - `spectrum = "rgb"`: each linear sRGB channel by one wavelength, the best for this air under this star ([`rgb`]);
-//! - `spectrum = "spectral"`: six fixed wavelengths, in two media of three channels each, and a matrix from the six to linear sRGB,
+//! - `spectrum = "spectral"`: six wavelengths, in two media of three channels each, and a matrix from the six to linear sRGB,
 //!   fitted once to the integral over all wavelengths ([`Bands`]).
 //!
 //! [`rays`] gives the integral itself; [`study`] tells how far each way is from it, in ΔE2000. Not here: light in several scatterings,

@@ -169,8 +169,8 @@ mod tests {
             let only_once = Options { max_walks: 0, single_error: 1e-4, ..Options::default() };
             let truth = reference::radiance(&channels, &[sight], &only_once)[0];
             let met = Met::trace(&medium, ray, 96).unwrap();
-            for c in 0..3 {
-                let (l, t) = (met.radiance(&at[c]), met.transmittance(&at[c]));
+            for (c, at) in at.iter().enumerate() {
+                let (l, t) = (met.radiance(at), met.transmittance(at));
                 assert!((l - truth.single[c]).abs() < 0.01 * truth.single[c] + 1e-9, "{ray:?}: {l} {}", truth.single[c]);
                 assert!((t - truth.transmittance[c]).abs() < 2e-3, "{ray:?}: {t} {}", truth.transmittance[c]);
             }

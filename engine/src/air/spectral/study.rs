@@ -133,14 +133,15 @@ struct Drawn {
 
 impl Drawn {
     fn new(medium: &SpectralMedium, star: &Spectrum) -> Self {
+        let bands = Bands::new(medium, star);
         Self {
             star: star.colour(),
             weights: channel_weights(star),
             all: medium.at(&(0..COUNT).map(|i| wavelength_nm(i) * NM).collect::<Vec<_>>()),
             plain: medium.at(&SpectralMedium::WAVELENGTHS_M),
             rgb: medium.at(&best_wavelengths_m(medium, star)),
-            bands: Bands::new(medium, star),
-            band_coefficients: super::bands::BANDS_NM.map(|triple| medium.at(&triple.map(|nm| nm * NM))),
+            band_coefficients: bands.wavelengths_nm.map(|triple| medium.at(&triple.map(|nm| nm * NM))),
+            bands,
         }
     }
 

@@ -3,6 +3,7 @@
 use super::chunk::Chunk;
 use super::level::{Checkpoint, Heard, Kind, Level, Plan};
 use super::mean;
+use super::moons::Outside;
 use super::orbit::{Details, EphemerisError, Orbit, check};
 use super::planets::Planets;
 use super::tree::{Pair, Tree, add};
@@ -24,7 +25,7 @@ const FIT: [f64; 2] = [1e-13, 1e-11];
 const FLOOR: f64 = 1e-15;
 /// Shortest revolutions that a chunk of light moons spans.
 const REVOLUTIONS: f64 = 32.0;
-/// Tides by other bodies on light moons count above this part of the planet's pull.
+/// The tide of another body on a light moon counts above this part of the planet's pull.
 const TIDE_COUNTS: f64 = 1e-10;
 
 /// Where every body of a system is, at any time. A handle: cheap to clone, shared between threads.
@@ -207,15 +208,18 @@ impl System {
             return None;
         }
         let start = Checkpoint { q: starts.iter().map(|s| s.0).collect(), v: starts.iter().map(|s| s.1).collect() };
-        let farthest = start.q.iter().map(|q| q.length()).fold(0.0, f64::max);
         let places = self.start_places();
-        let (mut others_gm, mut lists) = (Vec::new(), Vec::new());
+        let (mut outside, mut lists) = (Vec::new(), Vec::new());
         for (gm, list) in self.others(body) {
             // Half the distance at the start stands for the least.
             let distance = 0.5 * list.iter().fold(DVec3::ZERO, |sum, (track, w)| sum + places[*track] * *w).length();
-            let ratio = farthest / distance;
-            if gm / self.tree.gm[body] * ratio * ratio * ratio > TIDE_COUNTS {
-                others_gm.push(gm);
+            let strength = |q: &DVec3| {
+                let ratio = q.length() / distance;
+                gm / self.tree.gm[body] * ratio * ratio * ratio
+            };
+            let felt_by: Vec<usize> = (0..start.q.len()).filter(|i| strength(&start.q[*i]) > TIDE_COUNTS).collect();
+            if !felt_by.is_empty() {
+                outside.push(Outside { gm, felt_by });
                 lists.push(list);
             }
         }
@@ -229,7 +233,7 @@ impl System {
             planet_gm: self.tree.gm[body],
             gm: bodies.iter().map(|b| self.tree.family_gm[*b]).collect(),
             figure: details.figures.get(body).and_then(Clone::clone).filter(|f| !f.is_point()),
-            others_gm,
+            outside,
             heard,
             others,
             shares: bodies.iter().map(|b| self.tree.share(*b)).collect(),
@@ -425,12 +429,14 @@ impl Ephemeris {
         let Some(s) = &self.system else { return };
         let ticks = t.ticks.saturating_sub(s.tree.epoch.ticks);
         let known = |i: usize| i < s.tree.gm.len() || s.tree.has_light(i - s.tree.gm.len());
-        let zero = (DVec3::ZERO, DVec3::ZERO);
-        let tracks: Vec<Pair> = (0..2 * s.tree.gm.len()).map(|i| if known(i) { s.track(i, ticks, 0.0) } else { zero }).collect();
-        out.extend(s.whole.iter().map(|list| {
-            let sum = list.iter().fold((DVec3::ZERO, DVec3::ZERO), |sum, (k, w)| (sum.0 + tracks[*k].0 * *w, sum.1 + tracks[*k].1 * *w));
-            wrap(sum)
-        }));
+        // Tracks first, then bodies from them, then the tracks go: a list of their own would be asked of the allocator every time.
+        let tracks = 2 * s.tree.gm.len();
+        out.extend((0..tracks).map(|i| if known(i) { wrap(s.track(i, ticks, 0.0)) } else { State::default() }));
+        for list in &s.whole {
+            let sum = list.iter().fold((DVec3::ZERO, DVec3::ZERO), |sum, (k, w)| add(sum, (out[*k].position.0, out[*k].velocity.0), *w));
+            out.push(wrap(sum));
+        }
+        out.drain(..tracks);
     }
 
     /// Bounds on where a body can be, seen from its parent.

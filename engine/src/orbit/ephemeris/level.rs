@@ -6,7 +6,7 @@
 //! chunks made from them on demand.
 
 use super::chunk::{Chunk, Fitter};
-use super::moons::{Moons, Pole};
+use super::moons::{Moons, Outside, Pole};
 use super::planets::Planets;
 use crate::orbit::gravity::figure::Figure;
 use crate::orbit::integrate::gauss_radau::GaussRadau;
@@ -18,8 +18,9 @@ use std::sync::{Mutex, OnceLock, PoisonError, RwLock};
 /// Chunks that a level of moons keeps.
 const SLOTS: usize = 64;
 
-/// Tolerance for light moons: ten times that of the planets takes 4/5 of the time and moves Phobos by centimetres in ten years.
-const MOONS: f64 = 1e-8;
+/// Tolerance and settling of light moons' steps. Half the work of the planets' (1e-9, 1e-13), and after ten years no moon of the solar
+/// system is further off than 0.4 m (Mimas; Phobos 0.2 m), a hundred thousandth of what their starts are known to.
+const MOONS: [f64; 2] = [1e-5, 1e-11];
 
 /// Where a level stands at the border of a chunk.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -49,11 +50,11 @@ pub enum Kind {
         gm: Vec<f64>,
         /// The figure of the body they go round.
         figure: Option<Figure>,
-        /// GM of each of the others whose tides count.
-        others_gm: Vec<f64>,
+        /// The others whose tides count.
+        outside: Vec<Outside>,
         /// Tracks that tell where those are.
         heard: Vec<usize>,
-        /// For each of the others: places in `heard`, and weights.
+        /// For each of those: places in `heard`, and weights.
         others: Vec<Vec<(usize, f64)>>,
         /// Weight of each moon in the track that comes after theirs: what they draw the body aside.
         shares: Vec<f64>,
@@ -269,19 +270,21 @@ impl Level {
         let (start, end) = if n >= 0 { (early, late) } else { (late, early) };
         let mut points = Points { t: start, q: from.q.clone(), v: from.v.clone() };
         match &self.kind {
-            Kind::Planets { forces, .. } => run(&forces.run(), GaussRadau::TOLERANCE, &mut points, end, steps),
-            Kind::Moons { planet_gm, gm, figure, others_gm, heard: tracks, others, .. } => {
+            Kind::Planets { forces, .. } => {
+                run(&forces.run(), GaussRadau::new(from.q.len(), GaussRadau::TOLERANCE), &mut points, end, steps)
+            }
+            Kind::Moons { planet_gm, gm, figure, outside, heard: tracks, others, .. } => {
                 let others = self.others(heard, (early, late), tracks, others);
                 let forces = Moons {
                     planet_gm: *planet_gm,
                     pole: Pole::between(figure.as_ref(), self.epoch, early, late),
                     gm,
                     figure: figure.as_ref(),
-                    others_gm,
+                    outside,
                     others: &others,
                     span_s: (early, late),
                 };
-                run(&forces, MOONS, &mut points, end, steps);
+                run(&forces, GaussRadau::new(from.q.len(), MOONS[0]).settling(MOONS[1]), &mut points, end, steps);
             }
         }
         Checkpoint { q: points.q, v: points.v }
@@ -345,8 +348,7 @@ impl Level {
 }
 
 /// Integrates to `end`. Points that cannot go on (two at one place) go straight from there.
-fn run<F: Force>(force: &F, tolerance: f64, points: &mut Points, end: f64, mut steps: Option<&mut Vec<Made>>) {
-    let mut method = GaussRadau::new(points.q.len(), tolerance);
+fn run<F: Force>(force: &F, mut method: GaussRadau, points: &mut Points, end: f64, mut steps: Option<&mut Vec<Made>>) {
     loop {
         let before = points.t;
         match method.step(force, points, end) {

@@ -14,6 +14,15 @@ use crate::space::{Icrf, Position};
 use crate::time::SimTime;
 use glam::DVec3;
 
+/// Another body whose tide counts.
+#[derive(Clone, Debug)]
+pub struct Outside {
+    /// Its GM, m³/s².
+    pub gm: f64,
+    /// The moons for which it does.
+    pub felt_by: Vec<usize>,
+}
+
 /// The forces on the light moons of one body.
 #[derive(Debug)]
 pub struct Moons<'a> {
@@ -25,8 +34,8 @@ pub struct Moons<'a> {
     pub gm: &'a [f64],
     /// The planet's figure.
     pub figure: Option<&'a Figure>,
-    /// GM of the others whose tides count.
-    pub others_gm: &'a [f64],
+    /// The others whose tides count.
+    pub outside: &'a [Outside],
     /// Where they are, from the centre of mass of the planet and its light moons, over the chunk …
     pub others: &'a Chunk,
     /// … which begins here and ends there, s.
@@ -91,10 +100,10 @@ impl Force for Moons<'_> {
         for a in a.iter_mut() {
             *a -= yields;
         }
-        for (k, gm) in self.others_gm.iter().enumerate() {
+        for (k, other) in self.outside.iter().enumerate() {
             let place = Position::<Icrf>::new(self.others.position(k, x) - centre);
-            for (r, a) in q.iter().zip(&mut *a) {
-                *a += tide(*gm, place, Position::new(*r)).0;
+            for &i in &other.felt_by {
+                a[i] += tide(other.gm, place, Position::new(q[i])).0;
             }
         }
     }

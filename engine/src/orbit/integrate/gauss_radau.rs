@@ -20,6 +20,8 @@ use serde::{Deserialize, Serialize};
 
 /// Iterations after which a step that has not settled is taken as it is; its size then tells the control to shrink.
 const MAX_ITERATIONS: u32 = 12;
+/// Sweeps end where b₆ moves by less than this part of the acceleration. 4.3e-3 of that is felt: below 1e-13 it is noise.
+const SETTLED: f64 = 1e-13;
 /// A step may be this many times longer than the last; one that should have been this many times shorter is rejected.
 const MAX_CHANGE: f64 = 4.0;
 /// Beyond this ratio of steps the last polynomial says nothing about the next.
@@ -53,6 +55,8 @@ pub struct Memory {
 pub struct GaussRadau {
     /// (5040 ε)^{1/7}: the step in time scales of the motion.
     scales: f64,
+    /// By how much of its size b₆ may still move where the sweeps end.
+    settled: f64,
     memory: Memory,
     b: [Vec<f64>; TERMS],
     e: [Vec<f64>; TERMS],
@@ -74,6 +78,7 @@ impl GaussRadau {
         let tolerance = if tolerance > 0.0 && tolerance.is_finite() { tolerance } else { Self::TOLERANCE };
         let mut new = Self {
             scales: libm::pow(5040.0 * tolerance, 1.0 / 7.0),
+            settled: SETTLED,
             memory: Memory::default(),
             b: Default::default(),
             e: Default::default(),
@@ -86,6 +91,13 @@ impl GaussRadau {
         };
         new.fit(n);
         new
+    }
+
+    /// The same with sweeps that end where b₆ is about to move by less than `settled` of the acceleration (else 1e-13, where noise
+    /// begins): with a tolerance far above the floor of f64 nothing is lost by 1e-11.
+    pub fn settling(mut self, settled: f64) -> Self {
+        self.settled = settled;
+        self
     }
 
     /// What must be saved beside the points for a restart with the same bits.
@@ -255,10 +267,10 @@ impl GaussRadau {
             }
             self.work.evaluations += TERMS as u64;
             let error = if size > 0.0 { change / size } else { 0.0 };
-            // What b₆ moves by is 4.3e-3 of that in the acceleration: below 1e-13 it is noise there. The sweeps converge
-            // geometrically, the later ones up to ten times slower than the first; from noise on they shrink no longer.
+            // The sweeps converge geometrically, the later ones up to ten times slower than the first; from noise on they shrink no
+            // longer.
             let next = if sweep > 0 { 10.0 * error * (error / last) } else { error };
-            if next.is_nan() || next <= 1e-13 || sweep > 1 && error >= last {
+            if next.is_nan() || next <= self.settled || sweep > 1 && error >= last {
                 break;
             }
             last = error;

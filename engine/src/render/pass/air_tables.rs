@@ -1,11 +1,15 @@
 //! Air tables: transmittance, further orders of scattering and sky irradiance of each air, baked only when a medium is new or has changed.
 //!
+//! An air that is drawn in bands ([`crate::air::spectral`]) takes three slots: its own, whose tables everyone asks, and one for each
+//! band medium, by which its light along a ray is found.
+//!
 //! A slot (a layer of texture arrays, a block of the table of further orders) belongs to a body's id; the slot longest unused is given away when all are taken.
 //! What the tables mean and how to ask them is in `shaders/lib/air.wgsl`; bodies without air have no slot and ask nothing.
 
+use super::air_bands::{BandMixer, Tables};
 use super::air_orders::{Inputs, OrdersBaker};
 use crate::air::model::orders::Plan;
-use crate::air::{Classes, Medium};
+use crate::air::{Air, Classes, Medium};
 use crate::gpu::buffer::Uniform;
 use crate::gpu::texture::{Texture, linear_sampler};
 use crate::gpu::{Gpu, ShaderLibrary};
@@ -16,15 +20,34 @@ use crate::render::targets::HDR;
 use crate::scene::Snapshot;
 use crate::scene::gpu_data::{AirUniform, AirsUniform, MAX_AIRS, MEDIA_COLUMNS, MEDIA_ROWS, media_rows};
 use bytemuck::Zeroable;
+use glam::DMat3;
 use wgpu::{BindingResource, TextureUsages, TextureViewDimension};
 
 /// Texels of the transmittance table, as in `shaders/lib/air.wgsl`.
 const TRANSMITTANCE_SIZE: [u32; 2] = [256, 64];
 
+/// What of an air a slot holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Part {
+    /// The air as surfaces ask for it.
+    Own,
+    /// A medium of its bands.
+    Band(usize),
+}
+
+/// How an air is mixed of its bands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct InBands {
+    to_rgb: [DMat3; 2],
+    slots: [u32; 2],
+}
+
 /// Whose air a slot holds.
 struct Slot {
     id: u16,
+    part: Part,
     medium: Medium,
+    bands: Option<InBands>,
     used: u64,
     baked: bool,
 }
@@ -34,6 +57,7 @@ pub struct AirBaker {
     layout: wgpu::BindGroupLayout,
     pipeline: wgpu::ComputePipeline,
     orders: OrdersBaker,
+    mixer: BandMixer,
     transmittance: Texture,
     irradiance: Texture,
     media: Texture,
@@ -69,6 +93,7 @@ impl AirBaker {
         let transmittance = Texture::with(&gpu.device, "air transmittance", [w, h, MAX_AIRS as u32], 1, HDR, usage);
         let irradiance = OrdersBaker::irradiance_tables(gpu);
         let orders = OrdersBaker::new(gpu, shaders)?;
+        let mixer = BandMixer::new(gpu, shaders)?;
         let media = Texture::with(
             &gpu.device,
             "media",
@@ -86,19 +111,33 @@ impl AirBaker {
             media: media.array_view(),
         };
         let linear = linear_sampler(&gpu.device, "air tables", false);
-        Ok(Self { layout, pipeline, orders, transmittance, irradiance, media, values, airs, linear, slots: Vec::new(), clock: 0 })
+        Ok(Self { layout, pipeline, orders, mixer, transmittance, irradiance, media, values, airs, linear, slots: Vec::new(), clock: 0 })
     }
 
     /// The slot of each body of the scene that has air; new and changed media wait for [`AirBaker::record`].
     pub fn assign(&mut self, scene: &Snapshot) -> Vec<Option<u32>> {
         self.clock += 1;
-        scene.bodies.iter().map(|body| body.air.as_ref().and_then(|air| self.slot_of(body.id, &air.medium))).collect()
+        scene.bodies.iter().map(|body| body.air.as_ref().and_then(|air| self.slots_of(body.id, air))).collect()
+    }
+
+    /// The slot of an air, and those of its bands; where there is no room for these it is drawn without.
+    fn slots_of(&mut self, id: u16, air: &Air) -> Option<u32> {
+        let own = self.slot_of(id, Part::Own, &air.medium)?;
+        let bands = air.bands.as_ref().and_then(|bands| {
+            let [one, other] = [0, 1].map(|k| self.slot_of(id, Part::Band(k), &bands.media[k]));
+            Some(InBands { to_rgb: bands.to_rgb, slots: [one?, other?] })
+        });
+        if let Some(slot) = self.slots.get_mut(own as usize).filter(|s| s.bands != bands) {
+            slot.bands = bands;
+            slot.baked = false;
+        }
+        Some(own)
     }
 
     #[allow(clippy::cast_possible_truncation)]
-    fn slot_of(&mut self, id: u16, medium: &Medium) -> Option<u32> {
-        let fresh = Slot { id, medium: medium.clone(), used: self.clock, baked: false };
-        let at = match self.slots.iter().position(|s| s.id == id) {
+    fn slot_of(&mut self, id: u16, part: Part, medium: &Medium) -> Option<u32> {
+        let fresh = Slot { id, part, medium: medium.clone(), bands: None, used: self.clock, baked: false };
+        let at = match self.slots.iter().position(|s| s.id == id && s.part == part) {
             Some(i) => i,
             None if self.slots.len() < MAX_AIRS => {
                 self.slots.push(fresh);
@@ -113,7 +152,7 @@ impl AirBaker {
             }
         };
         let slot = self.slots.get_mut(at)?;
-        if slot.id == id && slot.medium == *medium {
+        if slot.id == id && slot.part == part && slot.medium == *medium {
             slot.used = self.clock;
         } else {
             *slot = fresh;
@@ -132,8 +171,8 @@ impl AirBaker {
     /// Bakes what waits (everything, where the frame is forced) and gives the tables.
     pub fn record(&mut self, f: &mut FrameContext<'_>) -> AirTables {
         let forced = f.scene.force.all;
-        for (i, slot) in self.slots.iter_mut().enumerate() {
-            slot.baked &= !(forced && f.air_slots.iter().flatten().any(|s| *s as usize == i));
+        for slot in &mut self.slots {
+            slot.baked &= !(forced && slot.used == self.clock);
         }
         let gpu = f.gpu;
         self.bake(gpu, &mut f.compute("air_tables"));
@@ -149,14 +188,20 @@ impl AirBaker {
     #[allow(clippy::cast_possible_truncation)]
     pub fn bake(&mut self, gpu: &Gpu, pass: &mut wgpu::ComputePass<'_>) {
         let mut all = AirsUniform::zeroed();
-        for (air, slot) in all.list.iter_mut().zip(&self.slots) {
-            *air = AirUniform::new(&slot.medium, &Classes::of(&slot.medium));
+        for ((air, slot), i) in all.list.iter_mut().zip(&self.slots).zip(0..) {
+            *air = AirUniform::new(&slot.medium, &Classes::of(&slot.medium)).in_slot(i);
+            if let Some(bands) = slot.bands {
+                *air = air.in_bands(&bands.to_rgb, bands.slots);
+            }
         }
         self.airs.write(&gpu.queue, &all);
         let waiting: Vec<u32> = self.slots.iter().enumerate().filter(|(_, s)| !s.baked).map(|(i, _)| i as u32).collect();
+        for slot in &waiting {
+            self.write_media(gpu, *slot);
+            self.bake_slot(gpu, pass, *slot);
+        }
         for slot in waiting {
-            self.write_media(gpu, slot);
-            self.bake_slot(gpu, pass, slot);
+            self.mix_slot(gpu, pass, slot);
         }
         self.slots.iter_mut().for_each(|s| s.baked = true);
     }
@@ -172,16 +217,8 @@ impl AirBaker {
 
     fn bake_slot(&self, gpu: &Gpu, pass: &mut wgpu::ComputePass<'_>, slot: u32) {
         let Some(held) = self.slots.get(slot as usize) else { return };
-        let layer = |table: &Texture, dimension| {
-            table.texture.create_view(&wgpu::TextureViewDescriptor {
-                dimension: Some(dimension),
-                base_array_layer: slot,
-                array_layer_count: Some(1),
-                ..Default::default()
-            })
-        };
-        let size = size_of::<AirUniform>() as u64;
-        let air = wgpu::BufferBinding { buffer: &self.airs.buffer, offset: u64::from(slot) * size, size: wgpu::BufferSize::new(size) };
+        let layer = |table, dimension| layer_of(table, slot, dimension);
+        let air = self.air_in(slot);
         let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("air transmittance"),
             layout: &self.layout,
@@ -211,9 +248,32 @@ impl AirBaker {
         self.orders.bake(gpu, pass, &Plan::new(&held.medium), &inputs);
     }
 
-    /// Tables of one medium alone, in slot 0, submitted: for probes and tests.
-    pub fn bake_alone(&mut self, gpu: &Gpu, medium: &Medium) -> AirTables {
-        self.slots = vec![Slot { id: 0, medium: medium.clone(), used: 0, baked: false }];
+    /// Mixes the tables of an air that is drawn in bands from theirs.
+    fn mix_slot(&self, gpu: &Gpu, pass: &mut wgpu::ComputePass<'_>, slot: u32) {
+        let Some(InBands { slots: [one, other], .. }) = self.slots.get(slot as usize).and_then(|s| s.bands) else { return };
+        let read = |table, slot| layer_of(table, slot, TextureViewDimension::D2Array);
+        let tables = Tables {
+            own: [&self.transmittance, &self.irradiance].map(|table| layer_of(table, slot, TextureViewDimension::D2)),
+            bands: [
+                read(&self.transmittance, one),
+                read(&self.transmittance, other),
+                read(&self.irradiance, one),
+                read(&self.irradiance, other),
+            ],
+        };
+        self.mixer.mix(gpu, pass, self.air_in(slot), &tables, TRANSMITTANCE_SIZE);
+    }
+
+    /// `Air` of a slot.
+    fn air_in(&self, slot: u32) -> wgpu::BufferBinding<'_> {
+        let size = size_of::<AirUniform>() as u64;
+        wgpu::BufferBinding { buffer: &self.airs.buffer, offset: u64::from(slot) * size, size: wgpu::BufferSize::new(size) }
+    }
+
+    /// Tables of one air alone, in slot 0 (its bands behind it), submitted: for probes and tests.
+    pub fn bake_alone(&mut self, gpu: &Gpu, air: &Air) -> AirTables {
+        self.slots.clear();
+        self.slots_of(0, air);
         let mut encoder = gpu.encoder("air tables");
         self.bake(gpu, &mut encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default()));
         gpu.submit(encoder);
@@ -224,4 +284,14 @@ impl AirBaker {
     pub const fn textures(&self) -> [&Texture; 2] {
         [&self.transmittance, &self.irradiance]
     }
+}
+
+/// One layer of a table.
+fn layer_of(table: &Texture, slot: u32, dimension: TextureViewDimension) -> wgpu::TextureView {
+    table.texture.create_view(&wgpu::TextureViewDescriptor {
+        dimension: Some(dimension),
+        base_array_layer: slot,
+        array_layer_count: Some(1),
+        ..Default::default()
+    })
 }

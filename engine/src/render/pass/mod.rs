@@ -2,8 +2,10 @@
 //!
 //! A pass has `new` (compiles), `skip` (why the scene does not need it, in words) and `record`.
 
+pub mod air_bands;
 pub mod air_orders;
 pub mod air_tables;
+pub mod baseline_hillaire;
 pub mod bloom;
 pub mod exposure;
 pub mod shadow;

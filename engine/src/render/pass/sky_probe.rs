@@ -77,7 +77,7 @@ pub fn probe(
     let mut frame = FrameUniform::zeroed();
     frame.star = vec4(options.star.0, options.star.1);
     shared.frame.write(&gpu.queue, &frame);
-    let tables = AirBaker::new(gpu, shaders)?.bake_alone(gpu, &air.medium);
+    let tables = AirBaker::new(gpu, shaders)?.bake_alone(gpu, air);
 
     let picture = picture_layout(gpu);
     let mut painter = painter(&Parts { gpu, shaders, shared: &shared, picture: &picture }, &air.model)?;

@@ -11,7 +11,7 @@ pub mod plausible;
 
 use super::fault::Fault;
 use super::fields;
-use super::overlay::{DATA_MAX, Overlay, read_bytes};
+use super::overlay::{DATA_MAX, read_bytes};
 use super::reader::{ANY, Reader};
 use super::tree::{Data, Node};
 use crate::world::system::Fog;
@@ -22,6 +22,7 @@ use engine::air::{Air, Column, ColumnSpec, Model, RangeError};
 use engine::light::spectrum::Starlight;
 use engine::units::NM;
 use optics::Channels;
+use std::path::PathBuf;
 
 /// Air as its file describes it.
 #[derive(Clone, Debug, Default)]
@@ -58,10 +59,8 @@ impl Datum {
 /// What an air is seen by, and where the files lie that it names.
 #[derive(Clone, Copy)]
 pub struct Setting<'a> {
-    /// The assets with mods over them.
-    pub overlay: &'a Overlay,
-    /// The folder of the file, from the root of the assets.
-    pub folder: &'a str,
+    /// Where a file beside the air's own lies, if there is one of this name.
+    pub beside: &'a dyn Fn(&str) -> Option<PathBuf>,
     /// The light under which its colours are found.
     pub star: &'a Starlight,
 }
@@ -181,10 +180,10 @@ fn painted(table: Option<&Node>, gradient: &mut Gradient, setting: &Setting<'_>,
     for (key, map) in keys::MAPS.into_iter().zip([&mut gradient.shell_map, &mut gradient.ground_map]) {
         let Some(entry) = table.and_then(|t| t.get(key)) else { continue };
         let name = entry.value.text().unwrap_or_default();
-        let relative = format!("{}/{name}", setting.folder);
-        let fault = match setting.overlay.find(&relative).filter(|_| !name.contains("..")) {
-            None => Fault::at(&entry.value.at, format!("`gradient.{key}` = \"{name}\": expected a PNG beside this file"))
-                .help(Some(format!("looked for {relative} in the assets and in the mods"))),
+        let plain = !name.contains(['/', '\\', ':']);
+        let fault = match Some(name).filter(|_| plain).and_then(setting.beside) {
+            None => Fault::at(&entry.value.at, format!("`gradient.{key}` = \"{name}\": expected a PNG that lies beside this file"))
+                .help(Some("in a mod it may also lie beside the file that a patch changes, in the assets".to_owned())),
             Some(path) => match read_bytes(&path, DATA_MAX).and_then(|bytes| painting(&bytes).map_err(|what| Fault::file(&path, what))) {
                 Ok(painted) => {
                     *map = painted;

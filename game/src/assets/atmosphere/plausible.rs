@@ -125,7 +125,8 @@ fn wrong_amount(tree: &Node, i: usize, column: &Column, tell: &mut impl FnMut(&s
 fn wrong_scale(layer: &Layer, i: usize, column: &Column, gravity_m_s2: f64, tell: &mut impl FnMut(&str, String, &str)) {
     let engine::air::Profile::Exponential { scale_height_m } = layer.profile else { return };
     let low = column.at(0.0);
-    if !matches!(layer.phase, Phase::Rayleigh | Phase::ElekRayleigh) || low.density_kg_m3 <= 0.0 || gravity_m_s2 <= 0.0 {
+    let scatters = layer.scattering_per_m.max_element() > 0.0 && matches!(layer.phase, Phase::Rayleigh | Phase::ElekRayleigh);
+    if !scatters || low.density_kg_m3 <= 0.0 || gravity_m_s2 <= 0.0 {
         return;
     }
     let hydrostatic = low.pressure_pa / (low.density_kg_m3 * gravity_m_s2);

@@ -20,21 +20,21 @@ fn assets() -> Assets {
 }
 
 /// Loaded once for all tests.
-fn sol() -> Arc<System> {
+pub fn sol() -> Arc<System> {
     static SOL: OnceLock<Arc<System>> = OnceLock::new();
     SOL.get_or_init(|| assets().system("sol", &|_, _| ()).unwrap_or_else(|e| panic!("{}", e.text()))).clone()
 }
 
-fn id(system: &System, key: &str) -> BodyId {
+pub fn id(system: &System, key: &str) -> BodyId {
     system.find(key).unwrap_or_else(|| panic!("no {key}"))
 }
 
-const EPOCH_JD: f64 = 2_461_265.241_041_667;
+pub const EPOCH_JD: f64 = 2_461_265.241_041_667;
 
 #[test]
 fn everything_that_is_shipped_loads() {
     let s = sol();
-    assert_eq!(s.bodies.len(), 17, "{:?}", s.bodies.iter().map(|b| &b.key).collect::<Vec<_>>());
+    assert_eq!(s.bodies.len(), 29, "{:?}", s.bodies.iter().map(|b| &b.key).collect::<Vec<_>>());
     assert_eq!(s.bodies[0].key, "sun");
     assert!(s.bodies.iter().enumerate().skip(1).all(|(i, b)| b.parent.is_some_and(|p| p.index() < i)));
     assert!(assets().starts().len() >= 7);
@@ -121,18 +121,11 @@ fn errors_at_other_dates_are_as_stated() {
 #[test]
 fn bound_moons_face_their_planets() {
     // Rotation and orbit come from different sources: IAU and IMCCE. Optical libration is 2e; what remains is the error of both
-    // (Titan: 2°, Ganymede: 2.6°, both in the prime meridian).
+    // (Ganymede: 2.6°, in the prime meridian). Moons beyond Jupiter: `moons`.
     let s = sol();
-    for (key, bound_deg) in [
-        ("moon", 8.2),
-        ("phobos", 4.0),
-        ("deimos", 3.0),
-        ("io", 1.5),
-        ("europa", 2.2),
-        ("ganymede", 2.9),
-        ("callisto", 1.5),
-        ("titan", 5.6),
-    ] {
+    for (key, bound_deg) in
+        [("moon", 8.2), ("phobos", 4.0), ("deimos", 3.0), ("io", 1.5), ("europa", 2.2), ("ganymede", 2.9), ("callisto", 1.5)]
+    {
         let moon = id(&s, key);
         let planet = s.body(moon).parent.unwrap();
         for days in [-300.0, 0.0, 3.3, 300.0] {

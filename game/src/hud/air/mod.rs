@@ -77,10 +77,14 @@ pub fn show(ctx: &egui::Context, editor: &mut Editor, body: &str, screen: &mut S
             let stepped = buttons(ui, draft, [undo, redo, save], reply);
             let height = ctx.content_rect().height() - 210.0;
             let mut now = draft.now.clone();
-            let done = ScrollArea::vertical().max_height(height.max(120.0)).auto_shrink([false, true]).show(ui, |ui| {
-                ui.spacing_mut().slider_width = 150.0;
-                contents(ui, &mut now, &editor.defaults, editor.radius_m)
-            });
+            let done = ScrollArea::vertical()
+                .max_height(height.max(120.0))
+                .min_scrolled_height(height.max(120.0))
+                .auto_shrink([false, true])
+                .show(ui, |ui| {
+                    ui.spacing_mut().slider_width = 150.0;
+                    contents(ui, &mut now, &editor.defaults, editor.radius_m)
+                });
             if done.inner.changed || !done.inner.held {
                 draft.step(now, done.inner.held);
             }

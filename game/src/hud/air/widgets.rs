@@ -84,7 +84,11 @@ fn entry(ui: &mut Ui, field: &'static Field, values: &mut Map<String, Value>, de
 
 fn key(ui: &mut Ui, field: &Field) {
     let text = RichText::new(field.key).font(style::mono(12.0));
-    ui.add_sized([KEYS, 18.0], egui::Label::new(text).truncate().halign(egui::Align::LEFT)).on_hover_text(field.doc);
+    let left = egui::Layout::left_to_right(egui::Align::Center);
+    ui.allocate_ui_with_layout(egui::Vec2::new(KEYS, 18.0), left, |ui| {
+        ui.set_min_width(KEYS);
+        ui.add(egui::Label::new(text).truncate()).on_hover_text(field.doc);
+    });
 }
 
 /// The widget of a value that is there. A value of another kind than it should have begins anew.

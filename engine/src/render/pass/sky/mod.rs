@@ -44,10 +44,13 @@ pub trait Painter: Send {
         let _ = scene;
         self.settings(body, air)
     }
-    /// Which pipeline draws a body.
-    fn variant(&self, body: &Body, air: &Air) -> Variant {
-        let _ = (body, air);
-        Variant::Full
+    /// Draws what its picture of a body is made of, just before that.
+    fn before(&mut self, f: &mut FrameContext<'_>, draw: &Draw<'_>) {
+        let _ = (f, draw);
+    }
+    /// What draws it then.
+    fn pipeline(&self) -> &wgpu::RenderPipeline {
+        &self.kind().pipeline
     }
     /// Group 3 for a body (`id` is [`Body::id`]), laid out by [`PainterKind::own_layout`].
     fn group(&self, id: u16) -> &wgpu::BindGroup;
@@ -81,40 +84,36 @@ pub struct PainterKind {
     pub file: &'static str,
     /// Layout of group 3.
     pub own_layout: wgpu::BindGroupLayout,
-    pipelines: [wgpu::RenderPipeline; 2],
+    /// Draws with the entry point `fragment`.
+    pub pipeline: wgpu::RenderPipeline,
+    /// For further pipelines of the same file.
+    pub module: wgpu::ShaderModule,
 }
 
-/// Which of a model's two pipelines: the second leaves out what its constants switch off.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Variant {
-    /// Everything that the model can do.
-    Full,
-    /// For airs that need less.
-    Plain,
+/// One body's air, about to be drawn.
+pub struct Draw<'a> {
+    /// The body.
+    pub body: &'a Body,
+    /// Its air.
+    pub air: &'a Air,
+    /// What its shell covers.
+    pub rect: Rect,
+    /// Group 1.
+    pub light: &'a wgpu::BindGroup,
+    /// Group 2.
+    pub picture: &'a wgpu::BindGroup,
 }
 
 impl PainterKind {
     /// Compiles `file`; `own` are the entries of group 3.
     pub fn new(parts: &Parts<'_>, file: &'static str, own: &[wgpu::BindGroupLayoutEntry]) -> Result<Self, RenderError> {
-        Self::with_plain(parts, file, own, &[])
-    }
-
-    /// The same; `plain` are the `override` constants of [`Variant::Plain`], which is the full pipeline where there are none.
-    pub fn with_plain(
-        parts: &Parts<'_>,
-        file: &'static str,
-        own: &[wgpu::BindGroupLayoutEntry],
-        plain: &[(&str, f64)],
-    ) -> Result<Self, RenderError> {
         let Parts { gpu, shaders, shared, picture } = parts;
         let own_layout =
             gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("group 3: model of air"), entries: own });
         let module = shaders.load(&gpu.device, file)?;
         let groups = [&shared.frame_layout, &shared.light_layout, picture, &own_layout];
-        let kind = PipelineKind::full_screen("sky", &module, &groups, HDR);
-        let full = kind.make(gpu);
-        let less = if plain.is_empty() { full.clone() } else { PipelineKind { constants: plain, ..kind }.make(gpu) };
-        Ok(Self { file, own_layout, pipelines: [full, less] })
+        let pipeline = PipelineKind::full_screen("sky", &module, &groups, HDR).make(gpu);
+        Ok(Self { file, own_layout, pipeline, module })
     }
 }
 
@@ -275,7 +274,7 @@ impl Sky {
         let whole = Rect::whole(f.targets.size);
         for (choice, uniform) in self.chosen.iter().zip(&self.uniforms) {
             let Some((id, air)) = air_of(f.scene, choice) else { continue };
-            let Some(painter) = self.painters.get(painter_of(&air.model)) else { continue };
+            let Some(painter) = self.painters.get_mut(painter_of(&air.model)) else { continue };
             let Some(body) = f.scene.bodies.get(choice.body as usize) else { continue };
             uniform.write(
                 &f.gpu.queue,
@@ -299,8 +298,9 @@ impl Sky {
                     BindGroupEntry { binding: 2, resource: uniform.buffer.as_entire_binding() },
                 ],
             });
+            painter.before(f, &Draw { body, air, rect: choice.rect, light, picture: &picture });
             let mut pass = f.draw_full_screen("sky", &into.view, choice.rect != whole);
-            pass.set_pipeline(&painter.kind().pipelines[painter.variant(body, air) as usize]);
+            pass.set_pipeline(painter.pipeline());
             pass.set_bind_group(1, light, &[]);
             pass.set_bind_group(2, &picture, &[]);
             pass.set_bind_group(3, painter.group(id), &[]);

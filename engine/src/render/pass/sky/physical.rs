@@ -1,10 +1,20 @@
-//! How the model `physical` draws: `shaders/lib/physical.wgsl`, with the air tables of group 1. It has no tables of its own.
+//! How the model `physical` draws: `shaders/lib/physical.wgsl`, with the air tables of group 1.
+//!
+//! The march is made at every second pixel of every second row first; in the picture a pixel between four that agree takes their mean, any
+//! other marches by itself. A forced frame marches at every pixel: the two differ by the bound that the shader states at `AGREE`.
 
-use super::{Painter, PainterKind, Parts, Variant, no_settings};
-use crate::air::{Air, Classes};
+use super::{Draw, Painter, PainterKind, Parts, no_settings};
+use crate::air::{Air, Classes, Medium};
+use crate::gpu::Gpu;
+use crate::gpu::texture::Texture;
 use crate::render::RenderError;
+use crate::render::pipeline::{PipelineKind, texture_entry};
+use crate::render::shared::FrameContext;
+use crate::render::targets::HDR;
 use crate::scene::Body;
 use crate::scene::gpu_data::SkySettings;
+use crate::space::relative::narrow;
+use wgpu::{BindGroupEntry, BindingResource};
 
 /// What most airs do without: media that are tables, and shadows of other worlds.
 const PLAIN: [(&str, f64); 2] = [("MEDIA_TABLES", 0.0), ("AIR_ECLIPSES", 0.0)];
@@ -14,21 +24,42 @@ pub fn make(parts: &Parts<'_>) -> Result<Box<dyn Painter>, RenderError> {
     Ok(Box::new(Physical::new(parts)?))
 }
 
+/// The pipelines for one kind of air.
+struct Rates {
+    /// A march at every pixel.
+    full: wgpu::RenderPipeline,
+    /// A march at every second pixel of every second row.
+    half: wgpu::RenderPipeline,
+    /// The picture from those.
+    merge: wgpu::RenderPipeline,
+}
+
 /// The painter.
 struct Physical {
     kind: PainterKind,
+    /// For any air, and for airs that do without [`PLAIN`]'s.
+    rates: [Rates; 2],
+    /// Group 3 where nothing is read from it.
     none: wgpu::BindGroup,
+    /// Group 3 for the body that is being drawn, and its pipeline.
+    chosen: Option<(wgpu::BindGroup, wgpu::RenderPipeline)>,
 }
 
 impl Physical {
     fn new(parts: &Parts<'_>) -> Result<Self, RenderError> {
-        let kind = PainterKind::with_plain(parts, "pass/sky_physical.wgsl", &[], &PLAIN)?;
-        let none = parts.gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("group 3: physical"),
-            layout: &kind.own_layout,
-            entries: &[],
+        let own = [0, 1].map(|i| texture_entry(i, wgpu::TextureViewDimension::D2));
+        let kind = PainterKind::new(parts, "pass/sky_physical.wgsl", &own)?;
+        let groups = [&parts.shared.frame_layout, &parts.shared.light_layout, parts.picture, &kind.own_layout];
+        let rates = [&[][..], &PLAIN[..]].map(|constants| {
+            let one = |entry, colours| {
+                let kind = PipelineKind::full_screen("sky", &kind.module, &groups, HDR);
+                PipelineKind { entry, colours, constants, ..kind }.make(parts.gpu)
+            };
+            Rates { full: one("fragment", 1), half: one("half_rate", 2), merge: one("merge", 1) }
         });
-        Ok(Self { kind, none })
+        let dark = Texture::new(&parts.gpu.device, "no air", [1, 1], HDR, wgpu::TextureUsages::TEXTURE_BINDING);
+        let none = group(parts.gpu, &kind.own_layout, [&dark.view; 2]);
+        Ok(Self { kind, rates, none, chosen: None })
     }
 }
 
@@ -36,14 +67,53 @@ impl Painter for Physical {
     fn kind(&self) -> &PainterKind {
         &self.kind
     }
-    fn variant(&self, body: &Body, air: &Air) -> Variant {
-        let simple = body.occluders.is_empty() && Classes::of(&air.medium).direct && air.medium.jumps_m(1).is_empty();
-        if simple { Variant::Plain } else { Variant::Full }
-    }
-    fn settings(&self, _body: &Body, _air: &Air) -> SkySettings {
-        no_settings()
+    fn settings(&self, _body: &Body, air: &Air) -> SkySettings {
+        let mut all = no_settings();
+        all[0][0] = greatest_extinction(&air.medium);
+        all
     }
     fn group(&self, _id: u16) -> &wgpu::BindGroup {
-        &self.none
+        self.chosen.as_ref().map_or(&self.none, |c| &c.0)
     }
+    fn pipeline(&self) -> &wgpu::RenderPipeline {
+        self.chosen.as_ref().map_or(&self.kind.pipeline, |c| &c.1)
+    }
+    fn before(&mut self, f: &mut FrameContext<'_>, draw: &Draw<'_>) {
+        let medium = &draw.air.medium;
+        let plain = draw.body.occluders.is_empty() && Classes::of(medium).direct && medium.jumps_m(1).is_empty();
+        let rates = &self.rates[usize::from(plain)];
+        if f.scene.force.all {
+            self.chosen = Some((self.none.clone(), rates.full.clone()));
+            return;
+        }
+        let views = [&f.targets.sky[0].view, &f.targets.sky[1].view];
+        let halves = group(f.gpu, &self.kind.own_layout, views);
+        let rect = draw.rect.half(f.targets.size);
+        let mut pass = f.draw_pair("sky", views);
+        pass.set_pipeline(&rates.half);
+        pass.set_bind_group(1, draw.light, &[]);
+        pass.set_bind_group(2, draw.picture, &[]);
+        pass.set_bind_group(3, &self.none, &[]);
+        pass.set_scissor_rect(rect.left, rect.top, rect.width, rect.height);
+        pass.draw(0..3, 0..1);
+        drop(pass);
+        self.chosen = Some((halves, rates.merge.clone()));
+    }
+}
+
+fn group(gpu: &Gpu, layout: &wgpu::BindGroupLayout, views: [&wgpu::TextureView; 2]) -> wgpu::BindGroup {
+    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("group 3: physical"),
+        layout,
+        entries: &[
+            BindGroupEntry { binding: 0, resource: BindingResource::TextureView(views[0]) },
+            BindGroupEntry { binding: 1, resource: BindingResource::TextureView(views[1]) },
+        ],
+    })
+}
+
+/// The greatest extinction of any channel between datum and top, m⁻¹.
+fn greatest_extinction(medium: &Medium) -> f32 {
+    let altitudes = (0..64).map(|i| f64::from(i * i) / 3969.0 * medium.top_altitude_m);
+    narrow(altitudes.map(|h| medium.extinction(h).max_element()).fold(0.0, f64::max))
 }

@@ -42,7 +42,7 @@ impl App {
         match draft.build(&self.opening.assets.overlay, Datum::new(body.gm_m3_s2, body.radius_m), &system.starlight) {
             Ok((air, warnings)) => {
                 (editor.wrong, editor.warnings) = (None, warnings);
-                self.trial = Some(Arc::new(system.with_look(id, air.look)));
+                self.trial = Some(Arc::new(system.with_look(id, air.look, air.fog)));
             }
             Err(wrong) => editor.wrong = Some(wrong),
         }

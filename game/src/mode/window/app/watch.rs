@@ -14,7 +14,7 @@ use std::sync::Arc;
 pub struct Watch {
     reloader: Option<Reloader>,
     reading: Option<Job<Result<Arc<System>, AssetErrors>>>,
-    /// A file is broken: all of them are read again.
+    /// A file other than an air's is broken: all of them are read again.
     broken: bool,
     /// The files tell of other bodies than the flight has: the next flight is to read them.
     pub stale: bool,
@@ -69,7 +69,10 @@ impl App {
         let Some(flight) = &self.flight else { return };
         let read = match (reloader.changed(), read) {
             (None, None) => return,
-            (None, Some(read)) => read,
+            (None, Some(read)) => {
+                self.watch.broken = read.is_err();
+                read
+            }
             // A few milliseconds: read at once, to be seen in this frame.
             (Some(Change::Airs), None) if !self.watch.stale && !self.watch.broken => self.opening.assets.airs(&flight.session.world.system),
             (Some(_), _) => {
@@ -83,7 +86,6 @@ impl App {
 
     fn take_over(&mut self, read: Result<Arc<System>, AssetErrors>) {
         let Some(flight) = &mut self.flight else { return };
-        self.watch.broken = read.is_err();
         match read {
             Ok(system) => {
                 self.hud.fault = None;

@@ -1,0 +1,249 @@
+//! What mods may do, what of a file a flight depends on, and what is hardly meant.
+
+use super::*;
+
+#[test]
+fn mods_add_replace_and_modify() {
+    let dir = assets();
+    let base = load_system(dir.path(), &[], "t").unwrap();
+    let one = tempfile::tempdir().unwrap();
+    let moonlet =
+        MOON.replace("Moon", "Moonlet").replace("221700.0", "90000.0").replace("deg_per_day = 30.0\nplane", "deg_per_day = 115.97\nplane");
+    put(one.path(), "bodies/moonlet/body.toml", moonlet.as_bytes());
+    put(one.path(), "bodies/rock/body.patch.toml", b"radius_km = 7000.0\n[relief.noise]\nseed = 8\n");
+    put(one.path(), "systems/t/system.patch.toml", b"bodies.add = [\"moonlet\"]\n");
+    let two = tempfile::tempdir().unwrap();
+    put(two.path(), "bodies/moon/body.toml", MOON.replace("radius_km = 500.0", "radius_km = 600.0").as_bytes());
+    let mods = [one.path().to_owned(), two.path().to_owned()];
+    let modded = load_system(dir.path(), &mods, "t").unwrap();
+    let radius = |key: &str| modded.find(key).map(|id| modded.body(id).radius_m);
+    assert_eq!((radius("rock"), radius("moon"), radius("moonlet")), (Some(7.0e6), Some(6.0e5), Some(5.0e5)));
+    assert_eq!(modded.find("moonlet").unwrap().0, 2, "nearer than the moon: before it");
+    assert!(modded.body(modded.find("rock").unwrap()).air.is_some(), "what the patch leaves out stays");
+    assert_ne!(base.hash, modded.hash);
+    let patch = put(one.path(), "bodies/rock/body.patch.toml", b"\n\nradius_km = -7.0\n");
+    let message = load_system(dir.path(), &mods, "t").unwrap_err().text();
+    assert!(message.contains(&format!("{}:3:", patch.display())), "the fault is in the patch:\n{message}");
+}
+
+#[test]
+fn the_hash_follows_what_a_flight_depends_on() {
+    let dir = assets();
+    let hash = || load_system(dir.path(), &[], "t").unwrap_or_else(|e| panic!("{}", e.text())).hash.clone();
+    let before = hash();
+    // Line ends, comments, how numbers are written, colours and what the air looks like are no difference.
+    put(dir.path(), MOON_FILE, MOON.replace('\n', "\r\n").as_bytes());
+    put(dir.path(), ROCK_FILE, ROCK.replace("albedo = [0.3, 0.3", "# grey\nalbedo = [0.2, 0.3").replace("6000.0", "6e3").as_bytes());
+    put(dir.path(), AIR_FILE, AIR.replace("5.8e-6", "9.9e-6").replace("g = 0.8", "g = 0.7").as_bytes());
+    put(dir.path(), SYSTEM_FILE, b"name = \"U\"\nbodies = [\"sun\", \"moon\", \"rock\"]\n");
+    assert_eq!(before, hash());
+    put(dir.path(), AIR_FILE, AIR.replace("pressure_pa = 90000.0", "pressure_pa = 90001.0").as_bytes());
+    let drags = hash();
+    assert_ne!(before, drags);
+    put(dir.path(), MOON_FILE, MOON.replace("radius_km = 500.0", "radius_km = 500.5").as_bytes());
+    assert_ne!(drags, hash());
+}
+
+#[test]
+fn a_patch_changes_a_list_by_the_names_in_it() {
+    let dir = assets();
+    let named = AIR.replace("[[layers]]\n", "[[layers]]\nname = \"gas\"\n");
+    put(dir.path(), AIR_FILE, named.as_bytes());
+    let one = tempfile::tempdir().unwrap();
+    let mods = [one.path().to_owned()];
+    let look = |patch: &str| {
+        put(one.path(), "bodies/rock/atmosphere.patch.toml", patch.as_bytes());
+        load_system(dir.path(), &mods, "t")
+            .map(|s| s.body(s.find("rock").unwrap()).look.clone().unwrap().medium.layers)
+            .map_err(|e| e.text())
+    };
+    let blue = look("[layers.gas]\nscattering_per_m = [1e-6, 2e-6, 9e-6]\n").unwrap();
+    assert_eq!((blue.len(), blue[0].scattering_per_m), (1, glam::Vec3::new(1e-6, 2e-6, 9e-6)));
+    let fog = "[[layers.add]]\nname = \"fog\"\nscattering_per_m = [1e-4, 1e-4, 1e-4]\nabsorption_per_m = [0, 0, 0]\n\
+        profile = { kind = \"exponential\", scale_height_m = 200 }\nphase = { kind = \"rayleigh\" }\n";
+    assert_eq!(look(fog).unwrap().len(), 2);
+    assert_eq!(look(&format!("layers.remove = [\"gas\"]\n{fog}")).unwrap().len(), 1);
+    let wrong = look("[layers.gsa]\nscattering_per_m = [1e-6, 2e-6, 9e-6]\n").unwrap_err();
+    assert!(
+        wrong.contains("atmosphere.patch.toml:1:9") && wrong.contains("no item named `gsa`") && wrong.contains("did you mean `gas`?"),
+        "{wrong}"
+    );
+    let wrong = look("layers.remove = [\"sag\"]\n").unwrap_err();
+    assert!(wrong.contains("atmosphere.patch.toml:1:18") && wrong.contains("no item named `sag`"), "{wrong}");
+}
+
+#[test]
+fn a_patch_of_what_is_not_there_is_named_itself() {
+    let dir = assets();
+    let one = tempfile::tempdir().unwrap();
+    let patch = put(one.path(), "bodies/rokc/atmosphere.patch.toml", b"top_altitude_m = 1e5\n");
+    let wrong = |mods: &[PathBuf]| load_system(dir.path(), mods, "t").unwrap_err().text();
+    let message = wrong(&[one.path().to_owned()]);
+    assert!(message.contains(&patch.display().to_string()) && message.contains("did you mean `rock`?"), "{message}");
+    assert!(!message.contains("the file is missing"), "{message}");
+    // An airless body has no atmosphere that could be changed.
+    fs::remove_dir_all(one.path().join("bodies")).unwrap();
+    let patch = put(one.path(), "bodies/moon/atmosphere.patch.toml", b"top_altitude_m = 1e5\n");
+    let message = wrong(&[one.path().to_owned()]);
+    assert!(message.contains(&patch.display().to_string()) && message.contains("there is no `bodies/moon/atmosphere.toml`"), "{message}");
+    // A later mod that brings the file replaces all that lies under it.
+    let two = tempfile::tempdir().unwrap();
+    put(two.path(), "bodies/moon/atmosphere.toml", AIR.as_bytes());
+    let message = wrong(&[one.path().to_owned(), two.path().to_owned()]);
+    assert!(message.contains(&patch.display().to_string()) && message.contains("changes nothing"), "{message}");
+    load_system(dir.path(), &[two.path().to_owned(), one.path().to_owned()], "t").unwrap_or_else(|e| panic!("{}", e.text()));
+}
+
+#[test]
+fn a_watched_folder_reloads_and_a_broken_file_is_told() {
+    let dir = assets();
+    let assets = Assets::new(dir.path().to_owned(), Vec::new());
+    let reloader = Reloader::watch(&assets, "t").unwrap();
+    let first = assets.system("t", &|_, _| ()).unwrap();
+    let wait = |what: &str| {
+        for _ in 0..1000 {
+            if let Some(outcome) = reloader.poll(&first) {
+                return outcome;
+            }
+            std::thread::sleep(std::time::Duration::from_millis(5));
+        }
+        panic!("nothing came: {what}");
+    };
+    put(dir.path(), MOON_FILE, MOON.replace("radius_km = 500.0", "radius_km = 501.0").as_bytes());
+    let system = wait("a changed file").unwrap();
+    assert_eq!(system.body(system.find("moon").unwrap()).radius_m, 5.01e5);
+    put(dir.path(), MOON_FILE, b"radius_km = ");
+    assert!(wait("a broken file").unwrap_err().text().contains("not TOML"));
+}
+
+#[test]
+fn a_saved_sky_is_there_within_three_tenths_of_a_second() {
+    use std::time::{Duration, Instant};
+    let dir = assets();
+    let file = put(dir.path(), AIR_FILE, AIR.as_bytes());
+    let assets = Assets::new(dir.path().to_owned(), Vec::new());
+    let first = assets.system("t", &|_, _| ()).unwrap();
+    let reloader = Reloader::watch(&assets, "t").unwrap();
+    let blue = |system: &System| system.body(system.find("rock").unwrap()).look.as_ref().unwrap().medium.layers[0].scattering_per_m.z;
+    // As editors save: over the file, in two writes, through a file beside it and a rename.
+    let mut best = Duration::MAX;
+    for (i, way) in [0, 1, 2].into_iter().cycle().take(6).enumerate() {
+        let value = 1e-5 + 1e-6 * i as f32;
+        let text = AIR.replace("33.1e-6", &format!("{value:e}"));
+        let began = Instant::now();
+        match way {
+            0 => fs::write(&file, &text).unwrap(),
+            1 => {
+                fs::write(&file, &text[..text.len() / 2]).unwrap();
+                std::thread::sleep(Duration::from_millis(5));
+                fs::write(&file, &text).unwrap();
+            }
+            _ => {
+                let beside = file.with_file_name(".atmosphere.toml.swp");
+                fs::write(&beside, &text).unwrap();
+                fs::rename(&beside, &file).unwrap();
+            }
+        }
+        loop {
+            match reloader.poll(&first) {
+                Some(Ok(system)) if blue(&system) == value => break,
+                Some(Err(e)) => panic!("{}", e.text()),
+                _ => assert!(began.elapsed() < Duration::from_secs(20), "way {way}: nothing came"),
+            }
+            std::thread::sleep(Duration::from_millis(2));
+        }
+        best = best.min(began.elapsed());
+    }
+    println!("saved to read: {best:?}");
+    assert!(best < Duration::from_millis(300), "{best:?}");
+    // What an editor leaves beside it changes nothing; a file that is taken away does.
+    put(dir.path(), "bodies/rock/atmosphere.toml~", b"x");
+    put(dir.path(), "bodies/rock/.atmosphere.toml.swx", b"x");
+    std::thread::sleep(Duration::from_millis(250));
+    assert_eq!(reloader.changed(), None);
+    fs::remove_file(&file).unwrap();
+    let gone = (0..2000).find_map(|_| {
+        std::thread::sleep(Duration::from_millis(5));
+        reloader.poll(&first)
+    });
+    let system = gone.unwrap().unwrap();
+    assert!(system.body(system.find("rock").unwrap()).look.is_none());
+}
+
+#[test]
+fn an_air_that_is_hardly_meant_is_told_and_taken() {
+    let dir = assets();
+    let warned = |from: &str, to: &str| {
+        assert!(AIR.contains(from), "{from}");
+        put(dir.path(), AIR_FILE, AIR.replace(from, to).as_bytes());
+        load_system(dir.path(), &[], "t").unwrap_or_else(|e| panic!("{}", e.text())).warnings.clone()
+    };
+    assert_eq!(warned("g = 0.8", "g = 0.8"), [""; 0]);
+    for (from, to, line, words) in [
+        ("[5.8e-6, 13.5e-6, 33.1e-6]", "[5.8e-3, 13.5e-3, 33.1e-3]", 4, "look like values per kilometre"),
+        ("top_altitude_m = 80000.0", "top_altitude_m = 20000.0", 1, "a hard edge"),
+        ("scattering_per_m = [5.8e-6, 13.5e-6, 33.1e-6]", "scattering_per_m = [0.9, 13.5e-6, 33.1e-6]", 3, "no light comes through"),
+    ] {
+        let warnings = warned(from, to);
+        let told = |w: &String| {
+            w.contains(&format!("atmosphere.toml:{line}:")) && w.contains("warning: ") && w.contains(words) && w.contains("help: ")
+        };
+        assert!(warnings.iter().any(told), "{to}: {warnings:#?}");
+    }
+    let rayleigh = |h: &str| {
+        put(
+            dir.path(),
+            AIR_FILE,
+            AIR.replace("kind = \"cornette_shanks\", g = 0.8", "kind = \"rayleigh\"").replace("8000.0", h).as_bytes(),
+        );
+        load_system(dir.path(), &[], "t").unwrap().warnings.clone()
+    };
+    assert_eq!(rayleigh("8000.0"), [""; 0]);
+    let told = rayleigh("4000.0");
+    assert!(told.len() == 1 && told[0].contains("p ≠ ρ R T / M") && told[0].contains("atmosphere.toml:6:"), "{told:#?}");
+}
+
+#[test]
+fn the_settings_of_every_model_are_keys_of_its_table() {
+    use crate::assets::atmosphere::keys::ATMOSPHERE;
+    use crate::assets::fields::Kind;
+    use engine::air::Model;
+    use engine::air::model::{Gradient, LimbTable, Physical, Thickness, ViewTable};
+    for model in [
+        Model::Physical(Physical::default()),
+        Model::Thickness(Thickness::default()),
+        Model::LimbTable(LimbTable::default()),
+        Model::ViewTable(ViewTable::default()),
+        Model::Gradient(Gradient::default()),
+    ] {
+        let value = serde_json::to_value(&model).unwrap();
+        let word = value["model"].as_str().unwrap();
+        let Some(Kind::Table(fields)) = ATMOSPHERE.iter().find(|f| f.key == word).map(|f| &f.kind) else { panic!("{word} has no table") };
+        let mut keys: Vec<&str> = fields.iter().map(|f| f.key).collect();
+        let mut settings: Vec<&str> = value.as_object().unwrap().keys().map(String::as_str).filter(|k| *k != "model").collect();
+        keys.sort_unstable();
+        settings.sort_unstable();
+        assert_eq!(keys, settings, "{word}");
+    }
+}
+
+#[test]
+fn banks_of_fog_are_placed_and_their_faults_told() {
+    let dir = assets();
+    let put_fog = |text: &str| put(dir.path(), AIR_FILE, format!("{AIR}{text}").as_bytes());
+    let bank = "[[fog]]\nlatitude_deg = 90.0\nlongitude_deg = 0.0\naltitude_m = 1000.0\nradius_m = 500.0\n";
+    put_fog(&format!("{bank}thickness = {{ opacity = 2.0, shadow = \"cylinder\" }}\n{bank}"));
+    let system = load_system(dir.path(), &[], "t").unwrap();
+    let fog = &system.body(system.find("rock").unwrap()).fog;
+    assert_eq!(fog.len(), 2);
+    assert!((fog[0].centre_m - 6.001e6 * glam::DVec3::Z).length() < 1e-3, "{}", fog[0].centre_m);
+    assert_eq!(fog[0].air.medium.top_altitude_m, 500.0);
+    let engine::air::Model::Thickness(look) = &fog[0].air.model else { panic!("{:?}", fog[0].air.model) };
+    assert_eq!((look.opacity, look.shadow), (2.0, engine::air::model::thickness::ShadowShape::Cylinder));
+    assert_eq!(fog[1].air.model, engine::air::Model::Thickness(engine::air::model::Thickness::default()));
+    put_fog(&bank.replace("radius_m = 500.0", "radius_m = -5.0\nradus_m = 1.0\nthickness = { opacity = -1.0 }"));
+    let told = load_system(dir.path(), &[], "t").unwrap_err().text();
+    for part in ["radius_m", "radus_m", "opacity"] {
+        assert!(told.contains(part), "{part} in: {told}");
+    }
+}
