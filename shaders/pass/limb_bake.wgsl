@@ -13,7 +13,7 @@ const MOST_STEPS: f32 = 4096.0;  // LimbTable::MOST_STEPS
 @compute @workgroup_size(8, 8)
 fn bake(@builtin(global_invocation_id) thread: vec3<u32>) {
     let size = textureDimensions(table);
-    // Threads beyond the edge do the edge's work again: their writes are not held back by lavapipe of Mesa 22.3.
+    // Threads beyond the edge do the edge's work again.
     let id = min(thread.xy, size - 1u);
     let point = limb_point(air, f32(size.x), id);
     let top = air.shape.y;

@@ -11,10 +11,10 @@
 @group(0) @binding(4) var media: texture_2d_array<f32>;
 @group(0) @binding(5) var linear: sampler;
 
-@compute @workgroup_size(64)
+@compute @workgroup_size(8)
 fn bake(@builtin(global_invocation_id) thread: vec3<u32>) {
     let size = textureDimensions(table).x;
-    // Threads beyond the edge do the edge's work again: their writes are not held back by lavapipe of Mesa 22.3.
+    // Threads beyond the edge do the edge's work again.
     let id = min(thread.x, size - 1u);
     let mu_s = space_sun(vt.counts.w > 0u, f32(id) / f32(size - 1u));
     let sines = sqrt(max(1.0 - mu_s * mu_s, 0.0));

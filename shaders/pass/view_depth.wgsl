@@ -11,7 +11,7 @@
 @compute @workgroup_size(8, 8)
 fn bake(@builtin(global_invocation_id) thread: vec3<u32>) {
     let size = textureDimensions(table);
-    // Threads beyond the edge do the edge's work again: their writes are not held back by lavapipe of Mesa 22.3.
+    // Threads beyond the edge do the edge's work again.
     let id = min(thread.xy, size - 1u);
     let graded = vt.counts.w > 0u;
     let x = vec2<f32>(id) / vec2<f32>(size - 1u);

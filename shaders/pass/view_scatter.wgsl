@@ -14,7 +14,7 @@ const SUN_RAD: f32 = 0.0047;  // ViewTable::SUN_RAD
 @compute @workgroup_size(8, 8)
 fn bake(@builtin(global_invocation_id) thread: vec3<u32>) {
     let size = textureDimensions(table);
-    // Threads beyond the edge do the edge's work again: their writes are not held back by lavapipe of Mesa 22.3.
+    // Threads beyond the edge do the edge's work again.
     let id = min(thread, size - 1u);
     let graded = vt.counts.w > 0u;
     let x = vec3<f32>(id) / vec3<f32>(size - 1u);

@@ -217,7 +217,7 @@ impl Painter for ViewTable {
             self.scatter.run(gpu, pass, tables, &scatter, [s.view_size.div_ceil(8), s.sun_size.div_ceil(8), s.height_size]);
             let ambient =
                 [(2, TextureView(&tables.ambient.view)), (3, TextureView(&tables.mirror.scatter)), (4, media), (5, Sampler(&self.linear))];
-            self.ambient.run(gpu, pass, tables, &ambient, [s.ambient_size.div_ceil(64), 1, 1]);
+            self.ambient.run(gpu, pass, tables, &ambient, [s.ambient_size.div_ceil(8), 1, 1]);
         }
     }
     fn lights_ground(&self) -> bool {
