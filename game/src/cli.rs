@@ -261,8 +261,7 @@ pub enum Probe {
         syzygy probe eclipses --on moon --by earth --from 2461000 --to 2462000")]
     Eclipses(ProbeEclipsesArgs),
     /// Spectral radiance along the rays of a CSV file: the same rows with L, W m⁻² sr⁻¹ nm⁻¹ (no ground, no sun's disc)
-    #[command(after_help = "Example:\n  syzygy probe sky --planet tests/reference/planets/earth.toml \
-        --rays tests/reference/sky_radiance_sample.csv --model reference --out sky.csv")]
+    #[command(after_help = "Example:\n  syzygy probe sky --planet earth.toml --rays rays.csv --model physical --out sky.csv")]
     Sky(Box<ProbeSkyArgs>),
 }
 
