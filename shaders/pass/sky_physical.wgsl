@@ -3,6 +3,7 @@
 // `fragment` marches at every pixel. `half_rate` marches at every second pixel of every second row, into two textures of half the size;
 // `merge` then draws the picture: a pixel between four that agree takes their mean, any other marches by itself.
 
+#include "lib/sky_draw.wgsl"
 #include "lib/physical.wgsl"
 
 @group(0) @binding(0) var<uniform> frame: Frame;
@@ -21,11 +22,6 @@
 @group(3) @binding(0) var half_radiance: texture_2d<f32>;
 @group(3) @binding(1) var half_transmittance: texture_2d<f32>;
 
-struct Varying {
-    @builtin(position) position: vec4<f32>,
-    @location(0) uv: vec2<f32>,
-}
-
 struct Half {
     @location(0) radiance: vec4<f32>,       // pre-exposed
     @location(1) transmittance: vec4<f32>,  // a: 1 where one ray stands for the pixel
@@ -36,12 +32,6 @@ struct Half {
 const AGREE: f32 = 0.08;
 // Optical depth between a pixel's surface and the nearest or farthest of those around it.
 const AGREE_DEPTH: f32 = 0.01;
-
-@vertex
-fn vertex(@builtin(vertex_index) index: u32) -> Varying {
-    let uv = full_screen_uv(index);
-    return Varying(full_screen_position(uv), uv);
-}
 
 // By the air's own medium, or by its two band media.
 fn light_of(body: Body, star: vec4<f32>, view: SkyView) -> AirLight {

@@ -1,5 +1,6 @@
 // The sky by the model `thickness`, for a picture and for given rays. Rust side: engine/src/render/pass/sky/thickness.rs.
 
+#include "lib/sky_draw.wgsl"
 #include "lib/thickness.wgsl"
 
 @group(0) @binding(0) var<uniform> frame: Frame;
@@ -11,17 +12,6 @@
 @group(2) @binding(2) var<uniform> sky: Sky;
 @group(2) @binding(3) var<storage, read> given: array<ProbeRay>;
 @group(2) @binding(4) var<storage, read_write> found: array<ProbeLight>;
-
-struct Varying {
-    @builtin(position) position: vec4<f32>,
-    @location(0) uv: vec2<f32>,
-}
-
-@vertex
-fn vertex(@builtin(vertex_index) index: u32) -> Varying {
-    let uv = full_screen_uv(index);
-    return Varying(full_screen_position(uv), uv);
-}
 
 @fragment
 fn fragment(in: Varying) -> @location(0) vec4<f32> {

@@ -1,5 +1,6 @@
 // The sky by the model `view_table`, for a picture and for given rays. Rust side: engine/src/render/pass/sky/view_table.rs.
 
+#include "lib/sky_draw.wgsl"
 #include "lib/view_table.wgsl"
 
 @group(0) @binding(0) var<uniform> frame: Frame;
@@ -16,17 +17,6 @@
 @group(3) @binding(0) var<uniform> vt: ViewTable;
 @group(3) @binding(1) var scatter: texture_3d<f32>;
 @group(3) @binding(2) var depths: texture_2d<f32>;
-
-struct Varying {
-    @builtin(position) position: vec4<f32>,
-    @location(0) uv: vec2<f32>,
-}
-
-@vertex
-fn vertex(@builtin(vertex_index) index: u32) -> Varying {
-    let uv = full_screen_uv(index);
-    return Varying(full_screen_position(uv), uv);
-}
 
 @fragment
 fn fragment(in: Varying) -> @location(0) vec4<f32> {
