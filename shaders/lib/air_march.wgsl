@@ -58,8 +58,8 @@ fn air_panels(air: Air, media: texture_2d_array<f32>, slot: i32, along: AirRay, 
     let redder = abs(sunk.y - sunk.x);
     let extinction = air_extinction(air, media, slot, min(low, high));
     let depth = max(max(extinction.x, extinction.y), extinction.z) * (end - begin);
-    // Points for the optical depth that can be seen through, on top of those for the shape of the path.
-    let more = clamp(0.125 * depth - 1.0, 0.0, 3.0);
+    // Points for the optical depth that can be seen through, and for a sun that sinks on the way, on top of those for the shape of the path.
+    let more = clamp(0.125 * depth - 1.0, 0.0, 3.0) + min(3.0 * redder / air.shape.y, 2.0);
     return u32(clamp(ceil(max(depth, max(40.0 * abs(high - low), 20.0 * redder) / air.shape.y)), 1.0, ceil(f32(most) + more)));
 }
 
@@ -74,7 +74,7 @@ fn air_march(
     let night = air_night(air.shape.x, path, along.up_sun, cosine, sun.angular_radius, end);
     var shade = AirShade(vec4<f32>(-1.0), false);
     if AIR_ECLIPSES && body.ids.y > 0 {
-        shade = air_shade(body, star, ray * path.start, ray, end, FAR_RING.x * air.shape.y);
+        shade = air_shade(body, star, ray * path.start, ray, end, air.rings[3].w);
     }
     let most = max(count / 4u, 1u);
 
@@ -100,9 +100,9 @@ fn air_march(
             for (var j = 0u; j < 4u; j++) {
                 let one = select(vec4<f32>(0.0), ONES, vec4<u32>(0u, 1u, 2u, 3u) == vec4<u32>(j));
                 let s = dot(n.s, one);
-                var eclipse = Eclipse(1.0, 1.0);
+                var eclipse = NO_ECLIPSE;
                 if AIR_ECLIPSES && shade.falls {
-                    eclipse = eclipse_at(body, star, ray * (path.start + s), air.shape.y);
+                    eclipse = eclipse_at(body, star, ray * (path.start + s), air_rings(air, dot(n.altitude, one)));
                 }
                 // Where a point stands for much optical depth, the collocation overshoots: there its source is taken as even over its share.
                 let own = depths * (GAUSS_WEIGHT * one);
