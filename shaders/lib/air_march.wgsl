@@ -42,15 +42,25 @@ fn air_source(
             * air_orders(air, orders, linear, slot, altitude, mu_s, (along.path.slope + s) / (air.shape.x + altitude), along.ray_sun);
 }
 
+// How low sunlight has come on its way to a point, for a sun below the level there: the altitude of its ray's lowest point.
+fn sun_lowest(air: Air, altitude: f32, r_mu_s: f32) -> f32 {
+    let r = air.shape.x + altitude;
+    let x = min(r_mu_s, 0.0);
+    return altitude - x * x / (r + sqrt(max(r * r - x * x, 0.0)));
+}
+
 // Panels for a stretch: one where little changes on it, `most` on a long one.
-fn air_panels(air: Air, media: texture_2d_array<f32>, slot: i32, path: AirPath, begin: f32, end: f32, most: u32) -> u32 {
-    let low = air_altitude(air, path, begin);
-    let high = air_altitude(air, path, end);
+fn air_panels(air: Air, media: texture_2d_array<f32>, slot: i32, along: AirRay, begin: f32, end: f32, most: u32) -> u32 {
+    let low = air_altitude(air, along.path, begin);
+    let high = air_altitude(air, along.path, end);
+    let sunk = vec2<f32>(
+        sun_lowest(air, low, along.up_sun + begin * along.ray_sun), sun_lowest(air, high, along.up_sun + end * along.ray_sun));
+    let redder = abs(sunk.y - sunk.x);
     let extinction = air_extinction(air, media, slot, min(low, high));
     let depth = max(max(extinction.x, extinction.y), extinction.z) * (end - begin);
-    // Points for the optical depth that can be seen through, on top of those for the shape of the path.
-    let more = clamp(0.125 * depth - 1.0, 0.0, 3.0);
-    return u32(clamp(ceil(max(depth, 40.0 * abs(high - low) / air.shape.y)), 1.0, ceil(f32(most) + more)));
+    // Points for the optical depth that can be seen through, and for a sun that sinks on the way, on top of those for the shape of the path.
+    let more = clamp(0.125 * depth - 1.0, 0.0, 3.0) + min(3.0 * redder / air.shape.y, 2.0);
+    return u32(clamp(ceil(max(depth, max(40.0 * abs(high - low), 20.0 * redder) / air.shape.y)), 1.0, ceil(f32(most) + more)));
 }
 
 // From the path's start to `end` metres further; `count` points on a long stretch. `ray` is the direction of sight, `star` the star's sphere.
@@ -64,7 +74,7 @@ fn air_march(
     let night = air_night(air.shape.x, path, along.up_sun, cosine, sun.angular_radius, end);
     var shade = AirShade(vec4<f32>(-1.0), false);
     if AIR_ECLIPSES && body.ids.y > 0 {
-        shade = air_shade(body, star, ray * path.start, ray, end, FAR_RING.x * air.shape.y);
+        shade = air_shade(body, star, ray * path.start, ray, end, air.rings[3].w);
     }
     let most = max(count / 4u, 1u);
 
@@ -75,7 +85,7 @@ fn air_march(
         let next = air_next_cut(air, path, begin, end, vec4<f32>(night, -1.0, -1.0), shade.cuts);
         let middle = 0.5 * (begin + next);
         let dark = middle > night.x && middle < night.y;
-        let panels = air_panels(air, media, slot, path, begin, next, select(most, max(most / 2u, 1u), dark));
+        let panels = air_panels(air, media, slot, along, begin, next, select(most, (most + 1u) / 2u, dark));
         for (var i = 0u; i < panels; i++) {
             let n = air_nodes(air, path, begin, next, i, panels);
             let m0 = air_matter(air, media, slot, n.altitude.x);
@@ -90,9 +100,9 @@ fn air_march(
             for (var j = 0u; j < 4u; j++) {
                 let one = select(vec4<f32>(0.0), ONES, vec4<u32>(0u, 1u, 2u, 3u) == vec4<u32>(j));
                 let s = dot(n.s, one);
-                var eclipse = Eclipse(1.0, 1.0);
+                var eclipse = NO_ECLIPSE;
                 if AIR_ECLIPSES && shade.falls {
-                    eclipse = eclipse_at(body, star, ray * (path.start + s), air.shape.y);
+                    eclipse = eclipse_at(body, star, ray * (path.start + s), air_rings(air, dot(n.altitude, one)));
                 }
                 // Where a point stands for much optical depth, the collocation overshoots: there its source is taken as even over its share.
                 let own = depths * (GAUSS_WEIGHT * one);

@@ -42,7 +42,7 @@ fn air_path(air: Air, up: vec3<f32>, altitude: f32, ray: vec3<f32>) -> AirPath {
         path.up = normalize(up * eye + ray * path.start);
     }
     let q = path.altitude * (2.0 * bottom + path.altitude);
-    path.exit = air_reach(path.slope, top * (2.0 * bottom + top) - q);
+    path.exit = air_reach(path.slope, (top - path.altitude) * (2.0 * bottom + top + path.altitude));
     path.ground = -1.0;
     let rest = path.slope * path.slope - q;
     if path.slope < 0.0 && rest > 0.0 && q > 0.0 {

@@ -77,14 +77,27 @@ fn air_shade(body: Body, star: vec4<f32>, point: vec3<f32>, ray: vec3<f32>, end:
     return out;
 }
 
-// Where |p₀ + s p₁| < r₀ + s r₁ between 0 and `end`; (end, end): nowhere. A ray that turns from the axis by less than the cone opens
-// is taken for inside all along when either of its ends is.
+// Where |p₀ + s p₁| < r₀ + s r₁ between 0 and `end`; (end, end): nowhere. A ray that turns from the axis by less than the cone opens meets
+// it once: from there on it is inside where the cone widens, until there where it narrows.
 fn cone_cut(p0: vec3<f32>, p1: vec3<f32>, r0: f32, r1: f32, end: f32) -> vec2<f32> {
-    if dot(p1, p1) <= r1 * r1 + 1e-12 {
-        let within = length(p0) < r0 || length(p0 + end * p1) < r0 + end * r1;
-        return vec2<f32>(select(end, 0.0, within), end);
+    let a = dot(p1, p1) - r1 * r1;
+    let b = dot(p0, p1) - r0 * r1;
+    let c = dot(p0, p0) - r0 * r0;
+    let rest = b * b - a * c;
+    if rest <= 0.0 {
+        return select(vec2<f32>(end), vec2<f32>(0.0, end), a < 0.0 && r0 > 0.0);
     }
-    let roots = cone_roots(dot(p1, p1) - r1 * r1, dot(p0, p1) - r0 * r1, dot(p0, p0) - r0 * r0, end);
-    let inside = r0 + 0.5 * (roots.x + roots.y) * r1 > 0.0;
-    return select(vec2<f32>(end), roots, roots.y > roots.x && inside);
+    let t = -b - select(-1.0, 1.0, b >= 0.0) * sqrt(rest);
+    // Beyond any end where a ray is parallel to the cone's side.
+    let far = select(t / a, select(-1e30, 1e30, t >= 0.0), abs(a) < 1e-30);
+    let near = c / select(t, 1e-30, t == 0.0);
+    let low = min(near, far);
+    let high = max(near, far);
+    var cut = vec2<f32>(low, high);
+    if a < 0.0 {
+        cut = select(vec2<f32>(-1e30, low), vec2<f32>(high, 1e30), r1 >= 0.0);
+    }
+    let held = clamp(cut, vec2<f32>(0.0), vec2<f32>(end));
+    let inside = r0 + 0.5 * (held.x + held.y) * r1 > 0.0;
+    return select(vec2<f32>(end), held, held.y > held.x && inside);
 }

@@ -22,9 +22,13 @@ fn daylight(
     let altitude = altitude_of(body, point);
     let up = normalize(point - body.centre.xyz);
     let mu_s = dot(up, body.sun.xyz);
-    var eclipse = Eclipse(1.0, 1.0);
+    var eclipse = NO_ECLIPSE;
     if body.ids.y > 0 {
-        eclipse = eclipse_at(body, star, point, select(0.0, air.shape.y, slot >= 0));
+        var rings = NO_RINGS;
+        if slot >= 0 {
+            rings = air_rings(air, altitude);
+        }
+        eclipse = eclipse_at(body, star, point, rings);
     }
     let visible = visible_above_limb(body.sun.w, sun_elevation(body.centre.w, altitude, mu_s)) * eclipse.direct;
     var out = Daylight(vec3<f32>(visible), vec3<f32>(0.0), up);

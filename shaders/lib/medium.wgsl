@@ -30,6 +30,7 @@ struct Air {
     jumps_high: vec4<f32>,
     orders: vec4<f32>,          // how the sun's height is mapped in the table of further orders: SunMap of engine/src/air/model/orders.rs, 0
     bands: array<vec4<f32>, 6>, // columns of the matrices to linear sRGB of the two media that draw it; w of a first: that medium's slot; w of [1]: how many of the two
+    rings: array<vec4<f32>, 8>, // from how far scattered light comes: engine/src/air/model/spread.rs. Four of weights at the datum and radius, four of their rise per m and where it ends
 }
 
 struct Airs {
@@ -40,6 +41,20 @@ struct Airs {
 struct AirMatter {
     scattering: mat4x3<f32>,  // a column per class
     extinction: vec3<f32>,
+}
+
+// Rings about a point from which light comes that is scattered there not for the first time.
+struct Rings {
+    weight: mat4x3<f32>,  // a column per ring, per channel; the point itself has the rest to 1
+    radius: vec4<f32>,    // along the ground, m
+}
+fn air_rings(air: Air, altitude: f32) -> Rings {
+    let h = clamp(altitude, 0.0, air.rings[4].w);
+    return Rings(
+        mat4x3<f32>(
+            air.rings[0].rgb + h * air.rings[4].rgb, air.rings[1].rgb + h * air.rings[5].rgb,
+            air.rings[2].rgb + h * air.rings[6].rgb, air.rings[3].rgb + h * air.rings[7].rgb),
+        vec4<f32>(air.rings[0].w, air.rings[1].w, air.rings[2].w, air.rings[3].w));
 }
 
 // From the channels of the k-th of the media that draw the air to linear sRGB. One that is not drawn in bands is the first itself.

@@ -9,7 +9,9 @@ fn physical_light(
 ) -> AirLight {
     let path = air_path(air, body.up.xyz, body.up.w, view.ray);
     let end = sky_end(path, view);
-    if end <= 0.0 {
+    // A line of no width that begins on the datum or under it and falls meets ground at once; a picture that drew none there looks on.
+    let grounded = view.pixel <= 0.0 && view.datum && path.altitude <= 0.0 && path.slope < 0.0;
+    if end <= 0.0 || grounded {
         return AirLight(vec3<f32>(0.0), vec3<f32>(1.0));
     }
     let sun = AirSun(body.sun.xyz, body.sun.w, 1.0, select(1.0, 0.0, (sky.ids.z & SKY_SINGLE) != 0u));

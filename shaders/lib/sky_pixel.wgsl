@@ -101,6 +101,11 @@ fn sky_probe_body(body: Body, asked: ProbeRay) -> Body {
     }
     return there;
 }
+// The star of a probe: at infinity in the ray's own direction where none was placed. The far distance is one whose square is a number.
+fn sky_probe_star(frame: Frame, body: Body, asked: ProbeRay) -> vec4<f32> {
+    let far = vec4<f32>(asked.sun.xyz, sin(asked.sun.w)) * 1e17;
+    return select(far, vec4<f32>(frame.star.xyz + body.centre.xyz, frame.star.w), vec4<bool>(frame.star.w > 0.0));
+}
 fn sky_probe_view(asked: ProbeRay) -> SkyView {
     let seen = asked.ray.w > 0.0;
     return SkyView(asked.ray.xyz, select(1e30, asked.ray.w, seen), !seen, 0.0);

@@ -36,7 +36,7 @@ fn probe(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let asked = given[id.x];
     let body = sky_probe_body(bodies.list[sky.ids.x], asked);
-    let star = vec4<f32>(frame.star.xyz + body.centre.xyz, frame.star.w);
+    let star = sky_probe_star(frame, body, asked);
     let light = thickness_light(body, airs.list[u32(body.ids.z)], star, sky, sky_probe_view(asked));
     found[id.x] = ProbeLight(vec4<f32>(light.radiance, 0.0), vec4<f32>(light.transmittance, 1.0));
 }

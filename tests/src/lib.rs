@@ -2,6 +2,7 @@
 
 pub mod flights;
 
+pub mod sky_shots;
 pub mod sky_truth;
 
 use engine::gpu::{BackendChoice, Gpu, ShaderLibrary, readback};

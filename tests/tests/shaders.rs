@@ -81,7 +81,8 @@ fn mirrored_structs_have_the_layout_of_their_twins() {
                 jumps_low,
                 jumps_high,
                 orders,
-                bands
+                bands,
+                rings
             }),
         ),
         ("lib/phase.wgsl", "Phases", fields!(rust::PhasesUniform { g, x, y, z })),

@@ -2,6 +2,7 @@
 
 use super::gpu_data::vec4;
 use crate::air::model::orders::SunMap;
+use crate::air::model::spread::{RINGS, Spread};
 use crate::air::model::view_space::Spacing;
 use crate::air::model::view_table::{AlphaColour, Split, ViewTable};
 use crate::air::{Classes, Layer, Medium, Phase, Profile};
@@ -50,6 +51,7 @@ pub struct AirUniform {
     pub jumps_high: [f32; 4],
     pub orders: [f32; 4],
     pub bands: [[f32; 4]; 6],
+    pub rings: [[f32; 4]; 2 * RINGS],
 }
 
 /// `Airs` of `shaders/lib/medium.wgsl`.
@@ -83,6 +85,17 @@ impl AirUniform {
             medium.layers.iter().take(Classes::MAX).enumerate().for_each(|(i, layer)| air.set(i, layer));
         }
         air
+    }
+
+    /// With the rings from which scattered light comes to a point in an eclipse.
+    #[must_use]
+    pub fn with_rings(mut self, spread: &Spread) -> Self {
+        let rise = 1.0 / spread.altitude_m.max(1e-3);
+        for k in 0..RINGS {
+            self.rings[k] = vec4(narrow3(spread.low[k]), narrow(spread.radius_m[k]));
+            self.rings[RINGS + k] = vec4(narrow3((spread.high[k] - spread.low[k]) * rise), narrow(2.0 * spread.altitude_m));
+        }
+        self
     }
 
     /// Drawn by the medium in this slot, its own.

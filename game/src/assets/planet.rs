@@ -9,17 +9,23 @@
 //! [atmosphere]                                  # or: atmosphere = "FILE"
 //! top_altitude_m = 60000.0
 //! # … all keys of atmosphere.toml
+//! [[occluders]]                                # none, one or more spheres that may hide the star from the air
+//! centre_m = [0.0, 0.0, 3.7e8]                  # from the planet's centre; or: direction = [x, y, z], distance_m = D
+//! radius_m = 1.7374e6
 //! ```
 //! Not here: bodies of a system ([`super::body`]); the keys of an air ([`super::atmosphere::keys`]).
 
 use super::atmosphere::{AirSpec, Datum, Setting, read_air};
 use super::fault::{AssetErrors, Fault};
 use super::overlay::read_text;
-use super::reader::{Faults, POSITIVE, Reader};
+use super::reader::{ANY, Faults, POSITIVE, Reader};
 use super::tree::{Data, Entry, Node, parse};
 use engine::air::Air;
+use engine::air::reference::Sphere;
 use engine::light::spectrum::Starlight;
+use engine::scene::gpu_data::MAX_OCCLUDERS;
 use engine::units::{DEG, KM, NM};
+use glam::DVec3;
 use std::path::Path;
 
 /// The star as the planet sees it.
@@ -40,6 +46,8 @@ pub struct Planet {
     pub star: Star,
     /// Its air, by the model that was asked for.
     pub air: Air,
+    /// What may hide the star.
+    pub occluders: Vec<Sphere>,
 }
 
 /// Reads a planet; `model` stands for what its air names. The settings of that model are those in the file's table of its name, or its own.
@@ -141,10 +149,33 @@ fn read(r: Reader<'_>, elsewhere: Option<&Node>, folder: &Path, faults: &Faults)
         }
         None => r.table("atmosphere").map(|t| (read_air(&t, datum, &setting), t.has("wavelengths_nm"))).unwrap_or_default(),
     };
+    let occluders = occluders(&r, radius_m);
     let star = star?;
     let air = at_star(spec, &star, named, &r);
     r.finish();
-    Some(Planet { star, air: air? })
+    Some(Planet { star, air: air?, occluders })
+}
+
+/// The spheres of `[[occluders]]`, each by its centre or by direction and distance, outside of the planet.
+fn occluders(r: &Reader<'_>, planet_m: f64) -> Vec<Sphere> {
+    let one = |t: Reader<'_>| {
+        let radius_m = t.number("radius_m", POSITIVE);
+        let by = if t.has("direction") { "direction" } else { "centre_m" };
+        let v = DVec3::from(t.numbers(by, ANY));
+        let centre_m = if by == "direction" { v.normalize_or_zero() * t.number("distance_m", POSITIVE) } else { v };
+        // A placeholder after a fault is NaN, and says no more.
+        if v == DVec3::ZERO || centre_m.length() <= planet_m + radius_m {
+            let from = centre_m.length();
+            t.wrong(by, format!("`occluders.{by}`: expected a sphere outside of the planet, at more than {} m from its centre, not {from}", planet_m + radius_m));
+        }
+        t.finish();
+        Sphere { centre_m, radius_m }
+    };
+    let all: Vec<Sphere> = r.tables("occluders").into_iter().map(one).collect();
+    if all.len() > MAX_OCCLUDERS {
+        r.wrong("occluders", format!("`occluders`: expected at most {MAX_OCCLUDERS}, not {}", all.len()));
+    }
+    all
 }
 
 #[cfg(test)]
@@ -209,6 +240,22 @@ mod tests {
         }
         let turned = gas.replace("[680.0, 550.0, 440.0]", "[440.0, 550.0, 680.0]");
         assert!(planet(&turned, None).unwrap_err().text().contains("falling"));
+    }
+
+    #[test]
+    fn occluders_are_read_by_centre_or_by_direction() {
+        assert!(planet(EARTH, None).unwrap().occluders.is_empty());
+        let moons = "[[occluders]]\ncentre_m = [0.0, 3e8, 4e8]\nradius_m = 1.7e6\n[[occluders]]\ndirection = [0.0, 0.6, 0.8]\ndistance_m = 5e8\nradius_m = 1.7e6";
+        let both = planet(&format!("{EARTH}\n{moons}"), None).unwrap().occluders;
+        assert_eq!(both.len(), 2);
+        assert!(both[0].centre_m.distance(both[1].centre_m) < 1e-3 && both[0].radius_m == 1.7e6, "{both:?}");
+        let says = |moon: &str| planet(&format!("{EARTH}\n[[occluders]]\n{moon}"), None).unwrap_err().text();
+        let text = says("centre_m = [0.0, 0.0, 6.4e6]\nradius_m = 1.7e6");
+        assert!(text.contains("p.toml:42") && text.contains("outside of the planet"), "{text}");
+        let text = says("direction = [0.0, 0.0, 1.0]\nradius_m = 1.7e6");
+        assert!(text.contains("`distance_m`"), "{text}");
+        let text = says("centre_m = [0.0, 0.0, 4e8]\nradius = 1.7e6");
+        assert!(text.contains("`radius_m`") && text.contains("radius"), "{text}");
     }
 
     #[test]

@@ -8,7 +8,8 @@ use std::path::PathBuf;
 #[derive(Clone, Debug, Default, Args)]
 pub struct ProbeSkyArgs {
     /// The planet: TOML with radius_km, [star] (wavelengths_nm, irradiance_w_m2_nm, three each, and angular_radius_deg) and
-    /// [atmosphere] (the keys of an atmosphere.toml, or atmosphere = "FILE"; its three channels are the star's wavelengths)
+    /// [atmosphere] (the keys of an atmosphere.toml, or atmosphere = "FILE"; its three channels are the star's wavelengths); for an
+    /// eclipse also [[occluders]], each with radius_m and centre_m = [x, y, z] from the planet's centre (or direction = [x, y, z] and distance_m)
     #[arg(long, value_name = "F.toml")]
     pub planet: PathBuf,
     /// Rays: CSV with the columns cam_x_km, cam_y_km, cam_z_km (from the planet's centre), view_x … view_z, sun_x … sun_z (unit

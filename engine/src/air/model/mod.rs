@@ -8,6 +8,7 @@ pub mod maps;
 pub mod orders;
 pub mod physical;
 pub mod shell;
+pub mod spread;
 pub mod thickness;
 pub mod view_space;
 pub mod view_table;

@@ -99,10 +99,10 @@ pub struct Plan {
 }
 
 /// One direction from an altitude.
-struct Direction {
-    cosine: f64,
+pub(super) struct Direction {
+    pub(super) cosine: f64,
     /// Its solid angle, all azimuths together.
-    weight: f64,
+    pub(super) weight: f64,
 }
 
 impl Plan {
@@ -161,7 +161,7 @@ fn gauss_legendre(n: usize) -> Vec<(f64, f64)> {
 }
 
 /// The directions from an altitude: zenith angles as squares from the horizon, where the sky changes most.
-fn directions(medium: &Medium, altitude_m: f64) -> Vec<Direction> {
+pub(super) fn directions(medium: &Medium, altitude_m: f64) -> Vec<Direction> {
     let (sine, cosine) = dip(medium.bottom_radius_m, altitude_m);
     let horizon = 0.5 * PI + libm::atan2(sine, cosine);
     let side = |n: usize, width: f64, sign: f64| {
@@ -174,7 +174,7 @@ fn directions(medium: &Medium, altitude_m: f64) -> Vec<Direction> {
 }
 
 /// Where a step begins: squares of even parts on both sides of the lowest point, where air is densest.
-fn step_at(low: f64, end: f64, part: f64) -> f64 {
+pub(super) fn step_at(low: f64, end: f64, part: f64) -> f64 {
     let before = low.sqrt();
     let y = part * (before + (end - low).sqrt()) - before;
     low + y * y.abs()

@@ -9,6 +9,7 @@
 use super::air_bands::{BandMixer, Tables};
 use super::air_orders::{Inputs, OrdersBaker};
 use crate::air::model::orders::Plan;
+use crate::air::model::spread::Spread;
 use crate::air::{Air, Classes, Medium};
 use crate::gpu::buffer::Uniform;
 use crate::gpu::texture::{Texture, linear_sampler};
@@ -47,6 +48,7 @@ struct Slot {
     id: u16,
     part: Part,
     medium: Medium,
+    spread: Spread,
     bands: Option<InBands>,
     used: u64,
     baked: bool,
@@ -136,10 +138,19 @@ impl AirBaker {
 
     #[allow(clippy::cast_possible_truncation)]
     fn slot_of(&mut self, id: u16, part: Part, medium: &Medium) -> Option<u32> {
-        let fresh = Slot { id, part, medium: medium.clone(), bands: None, used: self.clock, baked: false };
+        let fresh = || Slot {
+            id,
+            part,
+            medium: medium.clone(),
+            spread: Spread::new(medium),
+            bands: None,
+            used: self.clock,
+            baked: false,
+        };
         let at = match self.slots.iter().position(|s| s.id == id && s.part == part) {
             Some(i) => i,
             None if self.slots.len() < MAX_AIRS => {
+                let fresh = fresh();
                 self.slots.push(fresh);
                 return Some(self.slots.len() as u32 - 1);
             }
@@ -155,7 +166,7 @@ impl AirBaker {
         if slot.id == id && slot.part == part && slot.medium == *medium {
             slot.used = self.clock;
         } else {
-            *slot = fresh;
+            *slot = fresh();
         }
         Some(at as u32)
     }
@@ -189,7 +200,7 @@ impl AirBaker {
     pub fn bake(&mut self, gpu: &Gpu, pass: &mut wgpu::ComputePass<'_>) {
         let mut all = AirsUniform::zeroed();
         for ((air, slot), i) in all.list.iter_mut().zip(&self.slots).zip(0..) {
-            *air = AirUniform::new(&slot.medium, &Classes::of(&slot.medium)).in_slot(i);
+            *air = AirUniform::new(&slot.medium, &Classes::of(&slot.medium)).with_rings(&slot.spread).in_slot(i);
             if let Some(bands) = slot.bands {
                 *air = air.in_bands(&bands.to_rgb, bands.slots);
             }

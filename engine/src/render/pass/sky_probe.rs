@@ -2,7 +2,7 @@
 //! For `probe sky`, `bench air` and tests.
 
 use super::air_tables::AirBaker;
-use super::sky::{Parts, STEPS, painter, picture_layout};
+use super::sky::{Painter, Parts, STEPS, painter, picture_layout};
 use crate::air::Air;
 use crate::gpu::{Gpu, ShaderLibrary, readback};
 use crate::render::RenderError;
@@ -47,18 +47,17 @@ pub struct ProbeOptions {
     pub multiple: bool,
     /// What may hide the star: `centre_m` from the body's centre.
     pub occluders: Vec<Occluder>,
-    /// Centre (from the body's, m) and radius of the star, for occluders.
-    pub star: (Vec3, f32),
+    /// Centre (from the body's, m) and radius of the star, for occluders; `None`: at infinity, where each ray has its sun.
+    pub star: Option<(Vec3, f32)>,
 }
 
 impl Default for ProbeOptions {
     fn default() -> Self {
-        Self { steps: STEPS, multiple: true, occluders: Vec::new(), star: (Vec3::Z, 0.0) }
+        Self { steps: STEPS, multiple: true, occluders: Vec::new(), star: None }
     }
 }
 
 /// What each ray through `air` brings, to the ground or out of the air.
-#[allow(clippy::cast_possible_truncation)]
 pub fn probe(
     gpu: &Gpu,
     shaders: &ShaderLibrary,
@@ -66,80 +65,106 @@ pub fn probe(
     rays: &[ProbeRay],
     options: &ProbeOptions,
 ) -> Result<Vec<ProbeLight>, RenderError> {
-    if rays.is_empty() {
-        return Ok(Vec::new());
-    }
-    let shared = Shared::new(gpu);
-    let body = alone(air, options);
-    let mut bodies = BodiesUniform::zeroed();
-    bodies.list[0] = BodyUniform::new(&body, Some(0));
-    shared.bodies.write(&gpu.queue, &bodies);
-    let mut frame = FrameUniform::zeroed();
-    frame.star = vec4(options.star.0, options.star.1);
-    shared.frame.write(&gpu.queue, &frame);
-    let tables = AirBaker::new(gpu, shaders)?.bake_alone(gpu, air);
-
-    let picture = picture_layout(gpu);
-    let mut painter = painter(&Parts { gpu, shaders, shared: &shared, picture: &picture }, &air.model)?;
-    painter.plan(gpu, &[(body.id, air)], true);
-    let mut encoder = gpu.encoder("sky tables");
-    painter.bake(gpu, &mut encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default()));
-    gpu.submit(encoder);
-
-    let mirror = Mirror::none(gpu);
-    let light = shared.light_group(gpu, &tables, &mirror, &ShadowMap::none(gpu));
-    let storage = |binding, read_only| wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: wgpu::ShaderStages::COMPUTE,
-        ty: wgpu::BindingType::Buffer {
-            ty: wgpu::BufferBindingType::Storage { read_only },
-            has_dynamic_offset: false,
-            min_binding_size: None,
-        },
-        count: None,
-    };
-    let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("group 2: rays"),
-        entries: &[uniform_entry(2), storage(3, true), storage(4, false)],
-    });
-    let kind = painter.kind();
-    let module = shaders.load(&gpu.device, kind.file)?;
-    let groups = [&shared.frame_layout, &shared.light_layout, &layout, &kind.own_layout];
-    let pipeline = compute_pipeline(gpu, "sky_probe", &module, &groups, "probe");
-    let buffer = |contents: &[u8], usage| {
-        gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some("sky probe"), contents, usage })
-    };
-    let flags = if options.multiple { 0 } else { SKY_SINGLE };
-    let sky = SkyUniform { ids: [0, options.steps, flags, 0], settings: painter.settings(&body, air) };
-    let sky = buffer(bytemuck::bytes_of(&sky), BufferUsages::UNIFORM);
-    let given = buffer(bytemuck::cast_slice(rays), BufferUsages::STORAGE);
-    let empty = vec![ProbeLight::zeroed(); rays.len()];
-    let found = buffer(bytemuck::cast_slice(&empty), BufferUsages::STORAGE | BufferUsages::COPY_SRC);
-    let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("sky probe"),
-        layout: &layout,
-        entries: &[
-            BindGroupEntry { binding: 2, resource: sky.as_entire_binding() },
-            BindGroupEntry { binding: 3, resource: given.as_entire_binding() },
-            BindGroupEntry { binding: 4, resource: found.as_entire_binding() },
-        ],
-    });
-    let mut encoder = gpu.encoder("sky probe");
-    let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-    pass.set_pipeline(&pipeline);
-    for (i, group) in (0..).zip([&shared.frame_group, &light, &group, painter.group(body.id)]) {
-        pass.set_bind_group(i, group, &[]);
-    }
-    pass.dispatch_workgroups((rays.len() as u32).div_ceil(64), 1, 1);
-    drop(pass);
-    gpu.submit(encoder);
-    Ok(bytemuck::pod_collect_to_vec(&readback::buffer(gpu, &found)?))
+    Prober::new(gpu, shaders, air)?.ask(gpu, rays, options)
 }
+
+/// An air with its tables made, to be asked again and again.
+pub struct Prober {
+    shared: Shared,
+    air: Air,
+    painter: Box<dyn Painter>,
+    /// Groups 1 and 3 are those of the picture; group 2 has the rays.
+    light: wgpu::BindGroup,
+    layout: wgpu::BindGroupLayout,
+    pipeline: wgpu::ComputePipeline,
+}
+
+impl Prober {
+    /// Makes the tables of an air and compiles its model.
+    pub fn new(gpu: &Gpu, shaders: &ShaderLibrary, air: &Air) -> Result<Self, RenderError> {
+        let shared = Shared::new(gpu);
+        let tables = AirBaker::new(gpu, shaders)?.bake_alone(gpu, air);
+        let picture = picture_layout(gpu);
+        let mut painter = painter(&Parts { gpu, shaders, shared: &shared, picture: &picture }, &air.model)?;
+        painter.plan(gpu, &[(ALONE, air)], true);
+        let mut encoder = gpu.encoder("sky tables");
+        painter.bake(gpu, &mut encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default()));
+        gpu.submit(encoder);
+
+        let light = shared.light_group(gpu, &tables, &Mirror::none(gpu), &ShadowMap::none(gpu));
+        let storage = |binding, read_only| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: wgpu::ShaderStages::COMPUTE,
+            ty: wgpu::BindingType::Buffer {
+                ty: wgpu::BufferBindingType::Storage { read_only },
+                has_dynamic_offset: false,
+                min_binding_size: None,
+            },
+            count: None,
+        };
+        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("group 2: rays"),
+            entries: &[uniform_entry(2), storage(3, true), storage(4, false)],
+        });
+        let kind = painter.kind();
+        let module = shaders.load(&gpu.device, kind.file)?;
+        let groups = [&shared.frame_layout, &shared.light_layout, &layout, &kind.own_layout];
+        let pipeline = compute_pipeline(gpu, "sky_probe", &module, &groups, "probe");
+        Ok(Self { shared, air: air.clone(), painter, light, layout, pipeline })
+    }
+
+    /// What each ray brings.
+    #[allow(clippy::cast_possible_truncation)]
+    pub fn ask(&self, gpu: &Gpu, rays: &[ProbeRay], options: &ProbeOptions) -> Result<Vec<ProbeLight>, RenderError> {
+        if rays.is_empty() {
+            return Ok(Vec::new());
+        }
+        let body = alone(&self.air, options);
+        let mut bodies = BodiesUniform::zeroed();
+        bodies.list[0] = BodyUniform::new(&body, Some(0));
+        self.shared.bodies.write(&gpu.queue, &bodies);
+        let mut frame = FrameUniform::zeroed();
+        let (centre_m, radius_m) = options.star.unwrap_or((Vec3::Z, 0.0));
+        frame.star = vec4(centre_m, radius_m);
+        self.shared.frame.write(&gpu.queue, &frame);
+        let buffer = |contents: &[u8], usage| {
+            gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some("sky probe"), contents, usage })
+        };
+        let flags = if options.multiple { 0 } else { SKY_SINGLE };
+        let sky = SkyUniform { ids: [0, options.steps, flags, 0], settings: self.painter.settings(&body, &self.air) };
+        let sky = buffer(bytemuck::bytes_of(&sky), BufferUsages::UNIFORM);
+        let given = buffer(bytemuck::cast_slice(rays), BufferUsages::STORAGE);
+        let empty = vec![ProbeLight::zeroed(); rays.len()];
+        let found = buffer(bytemuck::cast_slice(&empty), BufferUsages::STORAGE | BufferUsages::COPY_SRC);
+        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("sky probe"),
+            layout: &self.layout,
+            entries: &[
+                BindGroupEntry { binding: 2, resource: sky.as_entire_binding() },
+                BindGroupEntry { binding: 3, resource: given.as_entire_binding() },
+                BindGroupEntry { binding: 4, resource: found.as_entire_binding() },
+            ],
+        });
+        let mut encoder = gpu.encoder("sky probe");
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        pass.set_pipeline(&self.pipeline);
+        for (i, group) in (0..).zip([&self.shared.frame_group, &self.light, &group, self.painter.group(body.id)]) {
+            pass.set_bind_group(i, group, &[]);
+        }
+        pass.dispatch_workgroups((rays.len() as u32).div_ceil(64), 1, 1);
+        drop(pass);
+        gpu.submit(encoder);
+        Ok(bytemuck::pod_collect_to_vec(&readback::buffer(gpu, &found)?))
+    }
+}
+
+/// Id of the body whose air is probed.
+const ALONE: u16 = 0;
 
 /// The body whose air is probed: eye and sun come with each ray.
 fn alone(air: &Air, options: &ProbeOptions) -> Body {
     Body {
-        id: 0,
+        id: ALONE,
         centre_m: Vec3::ZERO,
         radius_m: narrow(air.medium.bottom_radius_m),
         icrf_from_fixed: Quat::IDENTITY,

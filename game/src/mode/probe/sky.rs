@@ -6,11 +6,12 @@
 use crate::assets::AssetErrors;
 use crate::assets::planet::{Planet, Star, read_planet};
 use crate::cli::{Backend, ProbeSkyArgs};
-use engine::air::reference::{Options, Ray, radiance_noting};
+use engine::air::reference::{Options, Ray, Sphere, radiance_noting};
 use engine::gpu::{Gpu, GpuError, ShaderLibrary};
 use engine::render::RenderError;
 use engine::render::pass::sky_probe::{ProbeOptions, ProbeRay, probe};
-use engine::space::relative::narrow;
+use engine::scene::Occluder;
+use engine::space::relative::{narrow, narrow3};
 use engine::units::KM;
 use glam::DVec3;
 use std::io::{self, Write};
@@ -142,7 +143,7 @@ pub fn answer(args: &ProbeSkyArgs) -> Result<(Rays, Found), SkyError> {
 
 fn by_reference(planet: &Planet, rays: &Rays, args: &ProbeSkyArgs) -> Found {
     let sun_rad = planet.star.angular_radius_rad;
-    let ray = |s: &Sight| Ray { from_m: s.from_m, direction: s.view, sun: s.sun, sun_rad, occluders: Vec::new() };
+    let ray = |s: &Sight| Ray { from_m: s.from_m, direction: s.view, sun: s.sun, sun_rad, occluders: planet.occluders.clone() };
     let wanted: Vec<Ray> = rays.sights.iter().map(ray).collect();
     let options = Options { rel_error: args.rel_error, seed: args.seed, ..Options::default() };
     let bar = indicatif::ProgressBar::new(wanted.len() as u64);
@@ -165,7 +166,9 @@ fn by_model(planet: &Planet, rays: &Rays, backend: Option<Backend>) -> Result<Fo
         sun: vec4(s.sun, planet.star.angular_radius_rad),
     };
     let wanted: Vec<ProbeRay> = rays.sights.iter().map(ray).collect();
-    let found = probe(&gpu, &ShaderLibrary::default(), &planet.air, &wanted, &ProbeOptions::default())?;
+    let occluder = |o: &Sphere| Occluder { id: 1, centre_m: narrow3(o.centre_m), radius_m: narrow(o.radius_m) };
+    let options = ProbeOptions { occluders: planet.occluders.iter().map(occluder).collect(), ..ProbeOptions::default() };
+    let found = probe(&gpu, &ShaderLibrary::default(), &planet.air, &wanted, &options)?;
     if let Some(what) = gpu.take_error() {
         return Err(RenderError::Refused(what).into());
     }

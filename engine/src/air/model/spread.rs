@@ -1,0 +1,215 @@
+//! From how far scattered light comes: what an eclipse of part of an air does to the light that is scattered more than once.
+//!
+//! Light that has been scattered before reaches a point from all around. Of what is scattered there, the share `B(d)` has at some hop come
+//! further than the distance d along the ground; where the sun's disc is free by V at a place, further orders are dimmed to the mean of
+//! V with the weight −dB. In totality nearly all of them come from beyond the umbra: from d of a hundred kilometres and more, where
+//! B is a few hundredths.
+//!
+//! For one hop, from a point at altitude h, `B₁` is the integral over all directions of the light scattered once (and sent back by the ground)
+//! from beyond d; λ, the gain, is what of an even source comes back after a hop. A chain of hops goes on with probability λ, each but the first
+//! from the altitude h₁/2 at which most scattering happens, and it has come far as soon as one hop was far:
+//! `1 − B(d) = (1 − B₁(d, h)) (1 − λ) / (1 − λ (1 − B₁(d, h₁/2)))`. The mean over V is taken in a few rings.
+//!
+//! Left out: directions (light from beyond the umbra is scattered by its own phase function) and that a hop's end is not where the chain's
+//! began. Against walks of the reference for Earth's air, `B` is right to a third from 3 to 800 km.
+
+use super::orders::{directions, step_at};
+use crate::air::Medium;
+use core::f64::consts::PI;
+use glam::DVec3;
+
+/// Rings about a point.
+pub const RINGS: usize = 4;
+/// Values of B, in the mean over channels at h₁, at which rings begin: what is nearer than the first counts as the point itself.
+const BEGIN: [f64; RINGS] = [0.5, 0.2, 0.06, 0.015];
+/// Steps along a direction.
+const STEPS: usize = 32;
+/// Of an air's scattering this lies above the altitude h₁.
+const ABOVE: f64 = 0.3;
+/// Zenith cosine of the sun by which the light of the first hop is reckoned.
+const SUN: f64 = 0.5;
+
+/// Rings about a point, the nearest first.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Spread {
+    /// Distance of each along the ground, m.
+    pub radius_m: [f64; RINGS],
+    /// Weight of each at the datum, per channel; the point itself has the rest to 1.
+    pub low: [DVec3; RINGS],
+    /// The same at [`Spread::altitude_m`]; in between and as far again above evenly, then no more.
+    pub high: [DVec3; RINGS],
+    /// h₁, m.
+    pub altitude_m: f64,
+}
+
+/// One hop to a point.
+struct Hop {
+    /// Distances along the ground and what comes from there, rising.
+    light: Vec<(f64, DVec3)>,
+    all: DVec3,
+    gain: DVec3,
+}
+
+impl Hop {
+    fn beyond(&self, distance_m: f64) -> DVec3 {
+        let at = self.light.partition_point(|l| l.0 < distance_m);
+        let sum: DVec3 = self.light[at..].iter().map(|l| l.1).sum();
+        sum / self.all.max(DVec3::splat(f64::MIN_POSITIVE))
+    }
+}
+
+impl Spread {
+    /// Of a medium.
+    pub fn new(medium: &Medium) -> Self {
+        let sunlight = Sunlight::new(medium);
+        let Some(altitude_m) = sunlight.high_m else { return Self::default() };
+        let [low, middle, high] = [0.0, 0.5, 1.0].map(|x| hop(medium, &sunlight, x * altitude_m));
+        let gain = middle.gain.min(DVec3::splat(0.99));
+        let beyond = |first: &Hop, d: f64| {
+            let near = (DVec3::ONE - first.beyond(d)) * (DVec3::ONE - gain);
+            DVec3::ONE - near / (DVec3::ONE - gain * (DVec3::ONE - middle.beyond(d)))
+        };
+        let mean = |d: f64| beyond(&high, d).element_sum() / 3.0;
+        let last = high.light.last().map_or(0.0, |l| l.0);
+        let begin = BEGIN.map(|share| {
+            let (mut near, mut far) = (1e-3_f64, last.max(2e-3));
+            for _ in 0..30 {
+                let d = (near * far).sqrt();
+                if mean(d) > share { near = d } else { far = d }
+            }
+            near
+        });
+        let mut out = Self { altitude_m, ..Self::default() };
+        for k in 0..RINGS {
+            let end = begin.get(k + 1).copied().unwrap_or(f64::INFINITY);
+            let inside = |first: &Hop| (beyond(first, begin[k]) - if end.is_finite() { beyond(first, end) } else { DVec3::ZERO }).max(DVec3::ZERO);
+            (out.low[k], out.high[k]) = (inside(&low), inside(&high));
+            let ring = high.light.iter().filter(|l| l.0 >= begin[k] && l.0 < end);
+            let (sum, moment) = ring.fold((0.0, 0.0), |(s, m), l| (s + l.1.element_sum(), m + l.0 * l.1.element_sum()));
+            out.radius_m[k] = if sum > 0.0 { moment / sum } else { begin[k] };
+        }
+        out
+    }
+}
+
+/// What of the sun's light comes down to an altitude, and where most of it is scattered.
+struct Sunlight {
+    /// Optical depth above even steps of the root of altitude over the top.
+    depth: Vec<DVec3>,
+    top_m: f64,
+    /// The altitude above which [`ABOVE`] of the scattering lies; `None` where nothing scatters.
+    high_m: Option<f64>,
+}
+
+fn coefficients(medium: &Medium, altitude_m: f64) -> (DVec3, DVec3) {
+    let mut out = (DVec3::ZERO, DVec3::ZERO);
+    for layer in &medium.layers {
+        let density = layer.profile.density(altitude_m);
+        out.0 += layer.scattering_per_m.as_dvec3() * density;
+        out.1 += (layer.scattering_per_m + layer.absorption_per_m).as_dvec3() * density;
+    }
+    out
+}
+
+impl Sunlight {
+    const CELLS: usize = 96;
+
+    fn new(medium: &Medium) -> Self {
+        let top_m = medium.top_altitude_m;
+        let altitude = |i: usize| top_m * (i as f64 / Self::CELLS as f64).powi(2);
+        let mut depth = vec![DVec3::ZERO; Self::CELLS + 1];
+        let mut scattered = vec![0.0; Self::CELLS + 1];
+        for i in (0..Self::CELLS).rev() {
+            let (a, b) = (altitude(i), altitude(i + 1));
+            let (scattering, extinction) = coefficients(medium, 0.5 * (a + b));
+            depth[i] = depth[i + 1] + extinction * (b - a);
+            scattered[i] = scattered[i + 1] + scattering.element_sum() * (b - a);
+        }
+        let whole = scattered[0];
+        let at = scattered.partition_point(|s| *s > ABOVE * whole);
+        Self { depth, top_m, high_m: (whole > 0.0 && whole.is_finite()).then(|| altitude(at)) }
+    }
+
+    fn at(&self, altitude_m: f64) -> DVec3 {
+        let x = (altitude_m / self.top_m).clamp(0.0, 1.0).sqrt() * Self::CELLS as f64;
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+        let i = (x as usize).min(Self::CELLS - 1);
+        exp(self.depth[i].lerp(self.depth[i + 1], x - i as f64) / SUN)
+    }
+}
+
+fn exp(depth: DVec3) -> DVec3 {
+    DVec3::from_array(depth.to_array().map(|x| libm::exp(-x)))
+}
+
+/// What comes to a point by one hop, from every direction step by step.
+fn hop(medium: &Medium, sunlight: &Sunlight, from_m: f64) -> Hop {
+    let (bottom, top) = (medium.bottom_radius_m, medium.top_altitude_m);
+    let (r, q0) = (bottom + from_m, from_m * (2.0 * bottom + from_m));
+    let mut out = Hop { light: Vec::new(), all: DVec3::ZERO, gain: DVec3::ZERO };
+    let albedo = medium.ground_albedo.as_dvec3();
+    let mut put = |distance_m: f64, light: DVec3, gain: DVec3| {
+        out.light.push((distance_m, light));
+        out.all += light;
+        out.gain += gain;
+    };
+    for direction in directions(medium, from_m) {
+        let share = direction.weight / (4.0 * PI);
+        let slope = r * direction.cosine;
+        let sine = (1.0 - direction.cosine * direction.cosine).max(0.0).sqrt();
+        let to_ground = slope * slope - q0;
+        let hits = slope < 0.0 && to_ground > 0.0;
+        let rest = (top - from_m) * (2.0 * bottom + top + from_m);
+        let end = if hits { q0 / (to_ground.sqrt() - slope) } else { rest / ((slope * slope + rest).sqrt() + slope) };
+        let low = (-slope).clamp(0.0, end);
+        let mut through = DVec3::ONE;
+        for i in 0..STEPS {
+            let (from, to) = (step_at(low, end, i as f64 / STEPS as f64), step_at(low, end, (i + 1) as f64 / STEPS as f64));
+            let s = 0.5 * (from + to);
+            let q = q0 + s * (2.0 * slope + s);
+            let h = q / (bottom + (bottom * bottom + q).max(0.0).sqrt());
+            let (scattering, extinction) = coefficients(medium, h);
+            let kept = exp(extinction * (to - from));
+            let arrives = scattering / extinction.max(DVec3::splat(f64::MIN_POSITIVE)) * (DVec3::ONE - kept) * through * share;
+            put(s * sine, arrives * sunlight.at(h) / (4.0 * PI), arrives);
+            through *= kept;
+        }
+        if hits {
+            let arrives = albedo * through * share;
+            put(end * sine, arrives * sunlight.at(0.0) * (SUN / PI), arrives);
+        }
+    }
+    out.light.sort_by(|a, b| a.0.total_cmp(&b.0));
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::air::medium::tests::earth;
+
+    #[test]
+    fn earth_s_far_light_is_that_of_walks() {
+        // Of the reference's walks to an eye at 10 km that looks up, with a shadow of this radius about it, the share that is left: green.
+        let spread = Spread::new(&earth());
+        println!("{spread:?}");
+        let left = |d: f64| (0..RINGS).filter(|k| spread.radius_m[*k] > d).map(|k| spread.high[k].y).sum::<f64>();
+        assert!((0.35..0.55).contains(&left(12e3)), "{}", left(12e3));
+    }
+
+    #[test]
+    fn odd_media_have_weights() {
+        let mut medium = earth();
+        for (radius, top, scale) in [(1e3, 1e6, 1.0), (1e8, 100.0, 1e3), (6e6, 1e5, 0.0), (6e6, 1e5, 1e4), (1e3, 100.0, 1e-9)] {
+            (medium.bottom_radius_m, medium.top_altitude_m) = (radius, top);
+            medium.layers.iter_mut().for_each(|l| l.scattering_per_m *= scale);
+            let spread = Spread::new(&medium);
+            for weights in [spread.low, spread.high] {
+                let sum: DVec3 = weights.iter().copied().sum();
+                assert!(weights.iter().all(|w| w.is_finite() && w.min_element() >= 0.0) && sum.max_element() <= 1.0 + 1e-9, "{spread:?}");
+            }
+            assert!(spread.radius_m.iter().all(|r| r.is_finite()));
+            medium.layers.iter_mut().for_each(|l| l.scattering_per_m /= scale.max(1e-9));
+        }
+    }
+}
