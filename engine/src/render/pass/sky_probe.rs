@@ -8,8 +8,8 @@ use crate::gpu::{Gpu, ShaderLibrary, readback};
 use crate::render::RenderError;
 use crate::render::pipeline::{compute_pipeline, uniform_entry};
 use crate::render::shared::{Mirror, ShadowMap, Shared};
-use crate::scene::gpu_data::{BodiesUniform, BodyUniform, FrameUniform, MAX_OCCLUDERS, SKY_SINGLE, SkyUniform, vec4};
-use crate::scene::{Body, Occluder, Surface};
+use crate::scene::gpu_data::{BodiesUniform, BodyUniform, FrameUniform, Layers, MAX_OCCLUDERS, SKY_SINGLE, SkyUniform, vec4};
+use crate::scene::{Body, Occluder, SecondLight, Surface};
 use crate::space::relative::narrow;
 use bytemuck::{Pod, Zeroable};
 use glam::{Quat, Vec3};
@@ -49,11 +49,13 @@ pub struct ProbeOptions {
     pub occluders: Vec<Occluder>,
     /// Centre (from the body's, m) and radius of the star, for occluders.
     pub star: (Vec3, f32),
+    /// A second light, its illuminance in units of the sun's.
+    pub second: Option<SecondLight>,
 }
 
 impl Default for ProbeOptions {
     fn default() -> Self {
-        Self { steps: STEPS, multiple: true, occluders: Vec::new(), star: (Vec3::Z, 0.0) }
+        Self { steps: STEPS, multiple: true, occluders: Vec::new(), star: (Vec3::Z, 0.0), second: None }
     }
 }
 
@@ -72,7 +74,7 @@ pub fn probe(
     let shared = Shared::new(gpu);
     let body = alone(air, options);
     let mut bodies = BodiesUniform::zeroed();
-    bodies.list[0] = BodyUniform::new(&body, Some(0));
+    bodies.list[0] = BodyUniform::new(&body, &Layers { air: Some(0), ..Layers::default() }, options.second);
     shared.bodies.write(&gpu.queue, &bodies);
     let mut frame = FrameUniform::zeroed();
     frame.star = vec4(options.star.0, options.star.1);
@@ -87,7 +89,7 @@ pub fn probe(
     gpu.submit(encoder);
 
     let mirror = Mirror::none(gpu);
-    let light = shared.light_group(gpu, &tables, &mirror, &ShadowMap::none(gpu));
+    let light = shared.light_group(gpu, &tables, &tables.media, &mirror, &ShadowMap::none(gpu));
     let storage = |binding, read_only| wgpu::BindGroupLayoutEntry {
         binding,
         visibility: wgpu::ShaderStages::COMPUTE,
