@@ -1,12 +1,14 @@
-//! What lights a body beside the star's own free disc, as it is drawn: light that a planet's air bends into its shadow, and the light that
-//! other worlds throw.
+//! What the air lights, as it is drawn: light that it bends into its planet's shadow, moonlight in it and below it, stars that it drowns; and
+//! that relief cuts it where it stands.
 
 use core::f32::consts::PI;
+use engine::air::reference::{Options, Ray, optical_depth, radiance, span};
 use engine::air::refraction::{Behind, Limb};
 use engine::air::{Air, Layer, Medium, Phase, Profile};
 use engine::gpu::{BackendChoice, Gpu, ShaderLibrary};
 use engine::render::pass::sky_probe::{ProbeOptions, ProbeRay, probe};
-use engine::render::{FrameReport, OffscreenImage, Renderer, RendererOptions, Target};
+use engine::render::pass::stars::star;
+use engine::render::{FrameReport, OffscreenImage, Renderer, RendererOptions, StarCatalogue, Target};
 use engine::scene::{AutoOr, Body, Camera, Force, Occluder, SecondLight, Ship, Snapshot, Star, Surface};
 use engine::space::relative::{narrow, narrow3};
 use engine::units::{AU, DEG, KM};
@@ -207,8 +209,8 @@ fn moonlight_in_the_air_is_daylight_of_another_sun() {
     let mut worst = 0.0_f32;
     for ((a, b), n) in alone.iter().zip(&lit).zip(&night) {
         for c in 0..3 {
-            worst =
-                worst.max((b.radiance[c] - n.radiance[c]) / a.radiance[c] - 1.0).max(1.0 - (b.radiance[c] - n.radiance[c]) / a.radiance[c]);
+            assert!(a.radiance[c] > 1e-4, "{a:?}");
+            worst = worst.max(((b.radiance[c] - n.radiance[c]) / a.radiance[c] - 1.0).abs());
         }
     }
     println!("worst: {worst:.2e}");
@@ -236,7 +238,7 @@ fn a_full_moon_lights_the_night_and_no_day() {
         scene.exposure = AutoOr::Ev100(narrow(12.0 - 2.0 * depression_deg.clamp(0.0, 8.0)));
         scene
     };
-    for (depression, runs) in [(-30.0, false), (1.0, false), (3.0, true), (25.0, true)] {
+    for (depression, runs) in [(-30.0, false), (1.0, false), (7.0, true), (25.0, true)] {
         let (dark, _) = stage.draw(&at(depression, false));
         let (lit, report) = stage.draw(&at(depression, true));
         println!("{depression}°: sky {:?} → {:?} cd/m², {:?}", dark[5 * 48 + 24], lit[5 * 48 + 24], reason(&report, "second_light"));
@@ -250,7 +252,8 @@ fn a_full_moon_lights_the_night_and_no_day() {
             scene.force.all = true;
             let mut without = at(depression, false);
             without.force.all = true;
-            assert!(stage.draw(&scene).0 == stage.draw(&without).0, "forced moonlight at {depression}°");
+            let (a, b) = (stage.draw(&scene).0, stage.draw(&without).0);
+            assert!(a == b, "forced moonlight at {depression}°");
         }
         if depression > 20.0 {
             // Under a full moon: a sky of some 1e-3 cd/m², a ground under a few tenths of a lux.
@@ -258,4 +261,98 @@ fn a_full_moon_lights_the_night_and_no_day() {
             assert!((2e-4..5e-3).contains(&sky) && (1e-3..2e-2).contains(&ground), "{sky}, {ground}");
         }
     }
+}
+
+/// Light of the air between an eye and a surface, by the reference: that of the whole ray less that from the surface on.
+fn air_before(medium: &Medium, eye: DVec3, direction: DVec3, surface_m: f64, sun: DVec3) -> DVec3 {
+    let ray = |from_m| Ray { from_m, direction, sun, sun_rad: SUN_M / AU, occluders: Vec::new() };
+    let options = Options { rel_error: 3e-3, max_walks: 1 << 16, ..Options::default() };
+    let found = radiance(medium, &[ray(eye), ray(eye + direction * surface_m)], &options);
+    let near = span(medium, eye, direction).map_or(0.0, |s| s.near_m);
+    let depth = optical_depth(medium, eye, direction, (near, surface_m), 1e-6);
+    found[0].total - found[1].total * DVec3::new(libm::exp(-depth.x), libm::exp(-depth.y), libm::exp(-depth.z))
+}
+
+#[test]
+fn relief_cuts_the_air_where_it_stands() {
+    let mut stage = Stage::new([65, 65]);
+    let air = earth_air();
+    let star = DVec3::new(0.6, -0.5, 0.6).normalize_or(DVec3::X) * AU;
+    // A black mountain: a ball upon the datum. From within the air, from where a pixel is finer than the air, and from where it is not.
+    for (eye, foot_deg, ball_m, fov_deg) in
+        [(DVec3::Z * (EARTH_M + 2.0e3), 0.45, 6.0e3, 10.0), (DVec3::Z * 2.0e7, 71.0, 6.0e4, 0.5), (DVec3::Z * 2.0e7, 71.43, 6.0e4, 1.2)]
+    {
+        let (s, c) = libm::sincos(foot_deg * DEG);
+        let ball = DVec3::new(s, 0.0, c) * EARTH_M;
+        let mut earth = body(1, DVec3::ZERO, EARTH_M, star, eye);
+        earth.air = Some(air.clone());
+        let mut mountain = body(9, ball, ball_m, star, eye);
+        mountain.albedo = Vec3::ZERO;
+        // Looking over its flank, well above the datum.
+        let forward = (ball + ball.normalize_or(DVec3::Z) * (0.5 * ball_m) - eye).normalize_or(DVec3::X);
+        let mut scene = scene([65, 65], star, eye, forward, fov_deg, vec![mountain, earth]);
+        scene.exposure = AutoOr::Ev100(12.0);
+        scene.force.all = true;
+        let (pixels, _) = stage.draw(&scene);
+        let found = DVec3::from_array(pixels[32 * 65 + 32].map(f64::from)) / f64::from(scene.bodies[1].sun_illuminance_lx.x);
+        // The near side of the ball along the ray.
+        let along = (ball - eye).dot(forward);
+        let miss = (ball - eye - forward * along).length();
+        let surface_m = along - (ball_m * ball_m - miss * miss).sqrt();
+        let altitude = (eye + forward * surface_m).length() - EARTH_M;
+        let expected = air_before(&air.medium, eye, forward, surface_m, star.normalize_or(DVec3::X));
+        let whole = air_before(&air.medium, eye, forward, 2.0 * eye.length(), star.normalize_or(DVec3::X));
+        println!(
+            "{:.0} km away, {altitude:.0} m up: {:.4?}, reference {:.4?}, without it {:.4?}",
+            surface_m / KM,
+            found.to_array(),
+            expected.to_array(),
+            whole.to_array()
+        );
+        assert!((whole - expected).max_element() > 0.05 * expected.max_element(), "the mountain hides nothing");
+        let off = ((found - expected).abs() / expected).max_element();
+        println!("off by {off:.4}");
+        assert!(off < 0.03, "{off}");
+    }
+}
+
+#[test]
+fn stars_drown_in_the_day_and_the_brightest_return_in_totality() {
+    let mut stage = Stage::new([160, 90]);
+    let eye = DVec3::Z * (EARTH_M + 100.0);
+    // Sirius, Venus, a star of the first magnitude and one of the fourth, a few degrees apart over the northern horizon.
+    let stars: Vec<_> = [(-1.46, 0.0), (-4.2, 0.1), (1.0, 0.2), (4.0, 0.3)]
+        .map(|(v, y): (f32, f32)| star(Vec3::new(1.0, y - 0.15, 0.45).normalize_or(Vec3::X), v, 0.3))
+        .to_vec();
+    let mut changed = |elevation_deg: f64, eclipse: bool| {
+        let (s, c) = libm::sincos(elevation_deg * DEG);
+        let star = DVec3::new(-c, 0.0, s) * AU;
+        let mut earth = body(1, DVec3::ZERO, EARTH_M, star, eye);
+        earth.air = Some(earth_air());
+        if eclipse {
+            let centre_m = narrow3(star.normalize_or(DVec3::X) * 3.6e8);
+            earth.occluders = vec![Occluder { id: 2, centre_m, radius_m: narrow(1.04 * MOON_M) }];
+        }
+        let mut scene = scene([160, 90], star, eye, DVec3::new(1.0, 0.0, 0.45), 30.0, vec![earth]);
+        scene.exposure = AutoOr::Auto { compensation_ev: 0.0 };
+        let mut taken = |points: Vec<_>| {
+            stage.renderer.set_stars(&stage.gpu, StarCatalogue { points });
+            stage.draw(&scene);
+            stage.image.read_rgba8(&stage.gpu).unwrap_or_else(|e| panic!("{e}"))
+        };
+        let without = taken(Vec::new());
+        let by: Vec<u8> =
+            stars.iter().map(|star| taken(vec![*star]).iter().zip(&without).map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0)).collect();
+        println!("sun at {elevation_deg}°, eclipsed {eclipse}: bytes changed by Sirius, Venus, first and fourth magnitude: {by:?}");
+        by
+    };
+    // By day nothing, but for a trace of Venus; in totality Venus and Sirius; by night all.
+    for elevation in [50.0, 10.0] {
+        let by = changed(elevation, false);
+        assert!(by[0] <= 1 && by[1] <= 3 && by[2] <= 1 && by[3] == 0, "{by:?}");
+    }
+    let by = changed(30.0, true);
+    assert!(by[1] > 30 && by[0] > 3 && by[3] <= 1, "{by:?}");
+    let by = changed(-25.0, false);
+    assert!(by.iter().all(|b| *b > 10), "{by:?}");
 }

@@ -39,15 +39,15 @@ fn light_of(body: Body, star: vec4<f32>, view: SkyView) -> AirLight {
     let air = airs.list[u32(body.ids.z)];
     var luminance = vec3<f32>(0.0);
     var through = vec3<f32>(0.0);
-    for (var l = u32(max(body.lights.w, 0)); l < light_count(body); l++) {
+    let first = u32(max(body.lights.w, 0));
+    for (var l = first; l < light_count(body); l++) {
         var by = in_light(body, l);
         var radiance = vec3<f32>(0.0);
-        through = vec3<f32>(0.0);
         for (var k = 0u; k < u32(air.bands[1].w); k++) {
             by.ids.z = i32(air.bands[3u * k].w);
             let light = physical_light(by, airs.list[u32(by.ids.z)], media, transmittance, orders, linear, star, sky, view);
             radiance += air_to_rgb(air, k) * light.radiance;
-            through += air_to_rgb(air, k) * light.transmittance;
+            through += air_to_rgb(air, k) * light.transmittance * select(0.0, 1.0, l == first);
         }
         luminance += max(radiance, vec3<f32>(0.0)) * by.illuminance.rgb;
     }

@@ -1,7 +1,7 @@
 //! The second light of a body: the brightest of the other worlds in its sky, as a light. Moonlight, and planetshine on moons.
 //!
 //! Air in the star's daylight has no need of it: it is faded in as the star sinks below the horizon of the camera, from [`DUSK_RAD`] to
-//! [`NIGHT_RAD`], where twilight is still ten times as bright as a full moon. Worlds without air have it at all times. Not here: what it does
+//! [`NIGHT_RAD`], where twilight is still thirty times as bright as a full moon. Worlds without air have it at all times. Not here: what it does
 //! (`shaders/lib/second_light.wgsl`).
 
 use super::{Body, Snapshot};
@@ -12,10 +12,12 @@ use glam::Vec3;
 
 /// Illuminance under which a second light is none, lx: a fifth of that of a starry sky.
 pub const LEAST_LX: f32 = 2e-4;
-/// How deep the star stands below the camera's horizon where the second light begins to count in air, rad: at 2° twilight brings 100 lx.
-pub const DUSK_RAD: f32 = 0.035;
+/// A body whose radius is fewer pixels is a point: nothing of it is lit twice.
+const SEEN_PX: f32 = 0.5;
+/// How deep the star stands below the camera's horizon where the second light begins to count in air, rad: at 3° twilight brings 50 lx.
+pub const DUSK_RAD: f32 = 0.052;
 /// Where it counts in full, rad.
-pub const NIGHT_RAD: f32 = 0.07;
+pub const NIGHT_RAD: f32 = 0.087;
 /// Where the star itself no longer lights any air that can be seen from within it, rad: at 20° it brings 1e-4 of a full moon.
 pub const DARK_RAD: f32 = 0.35;
 
@@ -41,6 +43,10 @@ impl SecondLight {
     /// The brightest light that another body of the scene throws on body `place`; `None` under [`LEAST_LX`].
     pub fn of(scene: &Snapshot, place: usize) -> Option<Self> {
         let body = scene.bodies.get(place)?;
+        let seen = body.radius_m / (body.radius_m + body.camera_altitude_m).max(1.0) >= SEEN_PX * scene.camera.pixel_rad();
+        if !seen && scene.ships.iter().all(|s| s.host != Some(place)) {
+            return None;
+        }
         let lights = scene.bodies.iter().enumerate().filter(|(i, b)| *i != place && b.albedo != Vec3::ZERO);
         let brightest = lights.filter_map(|(i, by)| thrown(body, i, by)).max_by(|a, b| a.lux().total_cmp(&b.lux()))?;
         (brightest.lux() >= LEAST_LX).then_some(Self { share: share(body), ..brightest })
@@ -79,7 +85,8 @@ fn thrown(body: &Body, from: usize, by: &Body) -> Option<SecondLight> {
     let offset = by.centre_m.as_dvec3() - body.centre_m.as_dvec3();
     let distance = offset.length();
     let radius = f64::from(by.radius_m);
-    if distance <= radius {
+    let most = by.sun_illuminance_lx * by.albedo * narrow(radius * radius / (distance * distance));
+    if distance <= radius || most.max_element() < LEAST_LX {
         return None;
     }
     let direction = offset / distance;
@@ -97,7 +104,7 @@ fn thrown(body: &Body, from: usize, by: &Body) -> Option<SecondLight> {
 pub fn skip(scene: &Snapshot) -> Option<String> {
     let all: Vec<SecondLight> = (0..scene.bodies.len()).filter_map(|i| SecondLight::of(scene, i)).collect();
     if all.is_empty() {
-        return Some(format!("no world throws as much as {LEAST_LX} lx on another"));
+        return Some(format!("no world throws as much as {LEAST_LX} lx on what is drawn of another"));
     }
-    all.iter().all(|l| l.share <= 0.0).then(|| "the star is above the horizon, or less than 2° below it".to_owned())
+    all.iter().all(|l| l.share <= 0.0).then(|| "the star is above the horizon, or less than 3° below it".to_owned())
 }
