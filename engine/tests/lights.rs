@@ -356,3 +356,44 @@ fn stars_drown_in_the_day_and_the_brightest_return_in_totality() {
     let by = changed(-25.0, false);
     assert!(by.iter().all(|b| *b > 10), "{by:?}");
 }
+
+#[test]
+fn the_sun_s_disc_is_reddened_darker_at_its_limb_and_cut_by_the_horizon() {
+    let mut stage = Stage::new([96, 96]);
+    let air = earth_air();
+    let eye = DVec3::Z * (EARTH_M + 2.0);
+    let mut taken = |elevation_deg: f64| {
+        let (s, c) = libm::sincos(elevation_deg * DEG);
+        let star = DVec3::new(c, 0.0, s) * AU;
+        let mut earth = body(1, DVec3::ZERO, EARTH_M, star, eye);
+        earth.air = Some(air.clone());
+        let mut scene = scene([96, 96], star, eye, DVec3::new(c, 0.0, s), 0.8, vec![earth]);
+        scene.exposure = AutoOr::Ev100(20.0);
+        stage.draw(&scene).0
+    };
+    let at = |pixels: &[[f32; 3]], x: usize, y: usize| DVec3::from_array(pixels[y * 96 + x].map(f64::from));
+    let mean = f64::from(SUN_CD) / core::f64::consts::PI / (SUN_M * SUN_M);
+    for elevation in [4.0, 0.6] {
+        let pixels = taken(elevation);
+        let forward = DVec3::new(libm::cos(elevation * DEG), 0.0, libm::sin(elevation * DEG));
+        let far = span(&air.medium, eye, forward).map_or(0.0, |s| s.far_m);
+        let depth = optical_depth(&air.medium, eye, forward, (0.0, far), 1e-6);
+        let through = DVec3::new(libm::exp(-depth.x), libm::exp(-depth.y), libm::exp(-depth.z));
+        // I(1) over the mean of the disc is 1 / (1 − u/3) [Allen's Astrophysical Quantities, table 14.17].
+        let centre = through * mean / (DVec3::ONE - DVec3::new(0.52, 0.60, 0.72) / 3.0);
+        let (found, limb) = (at(&pixels, 48, 48), at(&pixels, 48 - 28, 48));
+        println!("{elevation}°: {:.3?}, expected {:.3?}; limb {:.3?}", found.to_array(), centre.to_array(), limb.to_array());
+        // Blue is mostly the sky's own light by then.
+        let off = ((found - centre).abs() / centre).max_element();
+        assert!(off < 0.03, "{off}");
+        // 0.94 of the radius from the centre: μ = 0.34.
+        let darker = limb / found;
+        assert!(darker.x > darker.y && darker.y > darker.z && (0.55..0.75).contains(&darker.x), "{darker}");
+        assert!(found.x > found.y && found.y > found.z);
+    }
+    // The centre on the horizon: above it the disc, below it the ground.
+    let pixels = taken(-0.045);
+    let (above, below) = (at(&pixels, 48, 40), at(&pixels, 48, 56));
+    println!("on the horizon: {above:.3?} above, {below:.3?} below");
+    assert!(above.x > 1e3 * below.x && above.x > 1e6);
+}
