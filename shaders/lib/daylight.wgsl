@@ -1,11 +1,12 @@
 // Daylight: what of the star's light reaches a point of a world or near it, directly and by way of the sky. For ground and ships.
 //
+// Behind other worlds the light is that which goes round them and through their air; so it is behind the world itself, above its air.
 // Both are shares of the illuminance above the air (Body.illuminance, or frame.intensity / distance²). Bind group 1 as
 // lib/air.wgsl says. A surface of albedo ρ whose normal is n, the zenith `up`: luminance = ρ/π · E · (sun · max(n·l, 0) + sky · (0.5 + 0.5 n·up)).
 // Not here: shadows of ships and mountains.
 
 #include "lib/air.wgsl"
-#include "lib/sunlight.wgsl"
+#include "lib/refracted.wgsl"
 
 struct Daylight {
     sun: vec3<f32>,  // face-on: horizon, eclipses, reddening by air
@@ -16,25 +17,31 @@ struct Daylight {
 // `point`: metres from the camera. `air`: airs.list[slot] where the body has one, any otherwise.
 fn daylight(
     body: Body, star: vec4<f32>, point: vec3<f32>,
-    air: Air, transmittance: texture_2d_array<f32>, irradiance: texture_2d_array<f32>, linear: sampler,
+    air: Air, transmittance: texture_2d_array<f32>, irradiance: texture_2d_array<f32>, refracted: texture_2d_array<f32>, linear: sampler,
 ) -> Daylight {
     let slot = body.ids.z;
     let altitude = altitude_of(body, point);
     let up = normalize(point - body.centre.xyz);
     let mu_s = dot(up, body.sun.xyz);
     var eclipse = NO_ECLIPSE;
-    if body.ids.y > 0 {
+    if body.ids.y > 0 && (slot >= 0 || body.lights.x == 0) {
         var rings = NO_RINGS;
         if slot >= 0 {
             rings = air_rings(air, altitude);
         }
         eclipse = eclipse_at(body, star, point, rings);
     }
-    let visible = visible_above_limb(body.sun.w, sun_elevation(body.centre.w, altitude, mu_s)) * eclipse.direct;
-    var out = Daylight(vec3<f32>(visible), vec3<f32>(0.0), up);
+    var free = vec3<f32>(eclipse.direct);
+    if body.lights.x > 0 {
+        free = eclipse_light(body, star, point, refracted);
+    }
+    let visible = visible_above_limb(body.sun.w, sun_elevation(body.centre.w, altitude, mu_s));
+    var out = Daylight(free * visible, vec3<f32>(0.0), up);
     if slot >= 0 && altitude < air.shape.y {
         out.sun *= air_sun_transmittance(air, transmittance, linear, slot, altitude, mu_s);
         out.sky = air_sky_irradiance(air, irradiance, linear, slot, altitude, mu_s) * eclipse.diffuse;
+    } else if body.lights.y >= 0 {
+        out.sun = free * own_limb_light(body, star, point, altitude, refracted);
     } else if slot >= 0 {
         // Above the air its limb still reddens a low sun: the path to the star may cross it.
         let path = air_path(air, up, altitude, body.sun.xyz);

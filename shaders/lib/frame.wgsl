@@ -27,6 +27,10 @@ struct Body {
     illuminance: vec4<f32>,  // rgb: by the star above the air, lx
     albedo: vec4<f32>,       // rgb: mean albedo
     ids: vec4<i32>,          // body id; occluders in use; slot of its air or −1; 1 where terrain tiles draw it
+    lights: vec4<i32>,       // 1 where an occluder has air; layer of its own refracted light or −1; 1 where there is a second light; 1 where the star lights no air in view
+    second: vec4<f32>,       // of the second light: xyz: to it, unit; w: its angular radius, rad
+    second_illuminance: vec4<f32>,  // rgb: by it above the air, lx
+    casters: array<vec4<i32>, 2>,   // of each occluder: layer of the light that its air bends into its shadow, or −1
     occluders: array<vec4<f32>, MAX_OCCLUDERS>,  // xyz: centre, m; w: radius, m
 }
 

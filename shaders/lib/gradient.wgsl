@@ -9,7 +9,7 @@ fn gradient_light(
     body: Body, air: Air, shell_map: texture_2d<f32>, ground_map: texture_2d<f32>, sky: Sky, view: SkyView,
 ) -> AirLight {
     let path = air_path(air, body.up.xyz, body.up.w, view.ray);
-    let end = sky_end(path, view);
+    let end = sky_end(air, path, view);
     if end <= 0.0 {
         return AirLight(vec3<f32>(0.0), vec3<f32>(1.0));
     }

@@ -165,7 +165,7 @@ fn limb_table_light(
     body: Body, air: Air, table: texture_2d<f32>, linear: sampler, star: vec4<f32>, sky: Sky, view: SkyView,
 ) -> AirLight {
     let path = graded_above(air, air_path(air, body.up.xyz, body.up.w, view.ray), view.datum);
-    let end = sky_end(path, view);
+    let end = sky_end(air, path, view);
     if end <= 0.0 {
         return AirLight(vec3<f32>(0.0), vec3<f32>(1.0));
     }

@@ -8,7 +8,7 @@ fn physical_light(
     star: vec4<f32>, sky: Sky, view: SkyView,
 ) -> AirLight {
     let path = air_path(air, body.up.xyz, body.up.w, view.ray);
-    let end = sky_end(path, view);
+    let end = sky_end(air, path, view);
     // A line of no width that begins on the datum or under it and falls meets ground at once; a picture that drew none there looks on.
     let grounded = view.pixel <= 0.0 && view.datum && path.altitude <= 0.0 && path.slope < 0.0;
     if end <= 0.0 || grounded {

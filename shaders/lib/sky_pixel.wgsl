@@ -79,14 +79,16 @@ fn sky_across(body: Body, view: SkyView, k: u32, rays: u32) -> SkyView {
     return SkyView(ray, view.surface, true, view.pixel);
 }
 
-// Where the ray ends, from the path's start; nothing to see where it is not positive.
-fn sky_end(path: AirPath, view: SkyView) -> f32 {
+// Where the ray ends, from the path's start; nothing to see where it is not positive. What is drawn by more than a pixel above the datum is
+// relief, and ends the air where it stands; below that the datum, where it counts, is the finer of the two.
+fn sky_end(air: Air, path: AirPath, view: SkyView) -> f32 {
     if path.start < 0.0 || view.surface <= path.start {
         return 0.0;
     }
     let exit = select(path.exit, path.ground, path.ground >= 0.0 && view.datum);
-    // On a limb (a datum and a surface both) the datum is the finer of the two.
-    return select(min(exit, view.surface - path.start), exit, view.datum);
+    let drawn = view.surface - path.start;
+    let relief = drawn < path.exit && air_altitude(air, path, min(drawn, path.exit)) > 1.5 * view.pixel * view.surface;
+    return select(exit, min(exit, drawn), relief || !view.datum);
 }
 
 // The body as a probe's ray stands to it.

@@ -14,7 +14,7 @@ fn thickness_light(body: Body, air: Air, star: vec4<f32>, sky: Sky, view: SkyVie
     if sky.settings[1].w > 0.5 {
         path.ground = -1.0;
     }
-    let end = sky_end(path, view);
+    let end = sky_end(air, path, view);
     if end <= 0.0 {
         return AirLight(vec3<f32>(0.0), vec3<f32>(1.0));
     }

@@ -136,7 +136,7 @@ fn view_table_light(
     star: vec4<f32>, view: SkyView,
 ) -> AirLight {
     let path = graded_above(air, air_path(air, body.up.xyz, body.up.w, view.ray), view.datum);
-    let end = sky_end(path, view);
+    let end = sky_end(air, path, view);
     if end <= 0.0 {
         return AirLight(vec3<f32>(0.0), vec3<f32>(1.0));
     }

@@ -5,6 +5,7 @@
 #include "lib/ship.wgsl"
 #include "lib/lambert.wgsl"
 #include "lib/daylight.wgsl"
+#include "lib/second_light.wgsl"
 #include "lib/shadow.wgsl"
 
 @group(0) @binding(0) var<uniform> frame: Frame;
@@ -17,6 +18,7 @@
 @group(1) @binding(5) var shadow_map: texture_depth_2d;
 @group(1) @binding(6) var shadow_compare: sampler_comparison;
 @group(1) @binding(7) var<uniform> shadow: Shadow;
+@group(1) @binding(9) var refracted: texture_2d_array<f32>;
 
 struct Varying {
     @builtin(position) position: vec4<f32>,
@@ -85,17 +87,22 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
     // Formation lights wash the hull faintly, so that it is found in the dark.
     var ambient = vec3<f32>(0.02);
     var mirrored = vec3<f32>(0.0);
+    var moonlit = vec3<f32>(0.0);
     let reflected = reflect(-v, n);
-    if in.host >= 0 {
-        let body = bodies.list[in.host];
-        let light = daylight(body, frame.star, in.point, airs.list[u32(max(body.ids.z, 0))], transmittance, irradiance, linear);
+    for (var k = 0u; in.host >= 0 && k < light_count(bodies.list[in.host]); k++) {
+        let body = in_light(bodies.list[in.host], k);
+        let light = daylight(body, frame.star, in.point, airs.list[u32(max(body.ids.z, 0))], transmittance, irradiance, refracted, linear);
         let up = light.up;
         let sine = min(body.centre.w / length(body.centre.xyz - in.point), 0.99999);
-        sun *= light.sun;
+        if k == 0u {
+            sun *= light.sun;
+        } else {
+            moonlit = body.illuminance.rgb * light.sun * ggx_reflect(m, n, v, body.sun.xyz, body.sun.w);
+        }
         ambient += body.illuminance.rgb * light.sky * (0.5 + 0.5 * dot(n, up));
         // The lit ground beneath the ship: Lambert, under its own daylight.
         let foot = in.point - up * max(altitude_of(body, in.point), 0.0);
-        let below = daylight(body, frame.star, foot, airs.list[u32(max(body.ids.z, 0))], transmittance, irradiance, linear);
+        let below = daylight(body, frame.star, foot, airs.list[u32(max(body.ids.z, 0))], transmittance, irradiance, refracted, linear);
         let ground = body.albedo.rgb / PI * body.illuminance.rgb * (below.sun * sun_cosine(dot(up, body.sun.xyz), body.sun.w) + below.sky);
         ambient += PI * ground * sphere_form_factor(sine, dot(n, -up));
         // Ground and sky mirrored in the hull.
@@ -105,7 +112,7 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
     }
     sun *= ship_shadow(shadow, shadow_map, shadow_compare, in.point + n * 0.05, sigma);
 
-    var luminance = sun * ggx_reflect(m, n, v, l, sigma);
+    var luminance = sun * ggx_reflect(m, n, v, l, sigma) + moonlit;
     luminance += ambient / PI * m.albedo * (1.0 - m.metallic);
     let f0 = mix(vec3<f32>(0.04), m.albedo, m.metallic);
     let fresnel = f0 + (max(vec3<f32>(1.0 - m.roughness), f0) - f0) * pow(1.0 - max(dot(n, v), 0.0), 5.0);

@@ -5,6 +5,7 @@
 
 #include "lib/sky_draw.wgsl"
 #include "lib/physical.wgsl"
+#include "lib/second_light.wgsl"
 
 @group(0) @binding(0) var<uniform> frame: Frame;
 @group(0) @binding(1) var<uniform> bodies: Bodies;
@@ -33,18 +34,30 @@ const AGREE: f32 = 0.08;
 // Optical depth between a pixel's surface and the nearest or farthest of those around it.
 const AGREE_DEPTH: f32 = 0.01;
 
-// By the air's own medium, or by its two band media.
+// By the air's own medium, or by its two band media; luminance, cd/m², in the star's light and the second one.
 fn light_of(body: Body, star: vec4<f32>, view: SkyView) -> AirLight {
     let air = airs.list[u32(body.ids.z)];
-    var all = AirLight(vec3<f32>(0.0), vec3<f32>(0.0));
-    for (var k = 0u; k < u32(air.bands[1].w); k++) {
-        var by = body;
-        by.ids.z = i32(air.bands[3u * k].w);
-        let light = physical_light(by, airs.list[u32(by.ids.z)], media, transmittance, orders, linear, star, sky, view);
-        all.radiance += air_to_rgb(air, k) * light.radiance;
-        all.transmittance += air_to_rgb(air, k) * light.transmittance;
+    var luminance = vec3<f32>(0.0);
+    var through = vec3<f32>(0.0);
+    let first = u32(max(body.lights.w, 0));
+    for (var l = first; l < light_count(body); l++) {
+        var by = in_light(body, l);
+        var radiance = vec3<f32>(0.0);
+        for (var k = 0u; k < u32(air.bands[1].w); k++) {
+            by.ids.z = i32(air.bands[3u * k].w);
+            let light = physical_light(by, airs.list[u32(by.ids.z)], media, transmittance, orders, linear, star, sky, view);
+            radiance += air_to_rgb(air, k) * light.radiance;
+            through += air_to_rgb(air, k) * light.transmittance * select(0.0, 1.0, l == first);
+        }
+        luminance += max(radiance, vec3<f32>(0.0)) * by.illuminance.rgb;
     }
-    return AirLight(max(all.radiance, vec3<f32>(0.0)), clamp(all.transmittance, vec3<f32>(0.0), vec3<f32>(1.0)));
+    return AirLight(luminance, clamp(through, vec3<f32>(0.0), vec3<f32>(1.0)));
+}
+
+// Light and transmittance of a pixel laid over what is stored there; `sum` is over `rays` rays.
+fn laid_over(behind: vec3<f32>, sum: AirLight, rays: u32) -> vec4<f32> {
+    let share = 1.0 / f32(rays);
+    return vec4<f32>(to_hdr(behind * sum.transmittance * share + sum.radiance * (exposure.pre * share), 1.0), 1.0);
 }
 
 // Sum over the rays that stand for a pixel, and their number.
@@ -65,7 +78,7 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
     let air = airs.list[u32(body.ids.z)];
     let view = sky_view(frame, in.uv, textureLoad(depth, pixel, 0));
     let rays = sky_rays(body, air, view);
-    return sky_over(textureLoad(opaque, pixel, 0).rgb, march(body, view, rays), rays, body, exposure);
+    return laid_over(textureLoad(opaque, pixel, 0).rgb, march(body, view, rays), rays);
 }
 
 @fragment
@@ -76,7 +89,7 @@ fn half_rate(in: Varying) -> Half {
     let view = sky_view(frame, (vec2<f32>(pixel) + 0.5) * frame.size.zw, textureLoad(depth, pixel, 0));
     let rays = sky_rays(body, air, view);
     let sum = march(body, view, min(rays, 1u));
-    return Half(vec4<f32>(to_hdr(sum.radiance * body.illuminance.rgb, exposure.pre), 1.0), vec4<f32>(sum.transmittance, select(0.0, 1.0, rays <= 1u)));
+    return Half(vec4<f32>(to_hdr(sum.radiance, exposure.pre), 1.0), vec4<f32>(sum.transmittance, select(0.0, 1.0, rays <= 1u)));
 }
 
 @fragment
@@ -123,7 +136,7 @@ fn merge(in: Varying) -> @location(0) vec4<f32> {
     var out = vec4<f32>(to_hdr(colour, 1.0), 1.0);
     let rays = sky_rays(body, air, view);
     for (var marches = select(1u, 0u, fine && rays <= 1u); marches > 0u; marches--) {
-        out = sky_over(behind, march(body, view, rays), rays, body, exposure);
+        out = laid_over(behind, march(body, view, rays), rays);
     }
     return out;
 }

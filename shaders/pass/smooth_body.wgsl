@@ -5,6 +5,7 @@
 #include "lib/sphere.wgsl"
 #include "lib/lambert.wgsl"
 #include "lib/daylight.wgsl"
+#include "lib/second_light.wgsl"
 #include "lib/shadow.wgsl"
 
 @group(0) @binding(0) var<uniform> frame: Frame;
@@ -17,6 +18,7 @@
 @group(1) @binding(5) var shadow_map: texture_depth_2d;
 @group(1) @binding(6) var shadow_compare: sampler_comparison;
 @group(1) @binding(7) var<uniform> shadow: Shadow;
+@group(1) @binding(9) var refracted: texture_2d_array<f32>;
 @group(2) @binding(0) var albedo_map: texture_2d<f32>;
 @group(2) @binding(1) var night_map: texture_2d<f32>;
 @group(2) @binding(2) var map_sampler: sampler;
@@ -98,11 +100,17 @@ fn fragment(in: Varying) -> Output {
     } else if radius > 2.0e7 {
         albedo = banded(albedo, fixed);
     }
-    let light = daylight(body, frame.star, ray * hit.distance, airs.list[u32(max(body.ids.z, 0))], transmittance, irradiance, linear);
-    let open = ship_shadow(shadow, shadow_map, shadow_compare, ray * hit.distance, body.sun.w);
-    let lit = light.sun * (open * sun_cosine(dot(normal, body.sun.xyz), body.sun.w)) + light.sky;
-    var luminance = albedo / PI * body.illuminance.rgb * lit;
-    luminance += night;
+    var luminance = night;
+    for (var k = 0u; k < light_count(body); k++) {
+        let by = in_light(body, k);
+        let light = daylight(by, frame.star, ray * hit.distance, airs.list[u32(max(body.ids.z, 0))], transmittance, irradiance, refracted, linear);
+        var open = 1.0;
+        if k == 0u {
+            open = ship_shadow(shadow, shadow_map, shadow_compare, ray * hit.distance, body.sun.w);
+        }
+        let lit = light.sun * (open * sun_cosine(dot(normal, by.sun.xyz), by.sun.w)) + light.sky;
+        luminance += albedo / PI * by.illuminance.rgb * lit;
+    }
 
     var out: Output;
     out.colour = vec4<f32>(to_hdr(luminance, exposure.pre) * cover, 1.0);

@@ -7,6 +7,7 @@
 #include "lib/ground.wgsl"
 #include "lib/lambert.wgsl"
 #include "lib/daylight.wgsl"
+#include "lib/second_light.wgsl"
 #include "lib/shadow.wgsl"
 #include "lib/view_table.wgsl"
 
@@ -21,6 +22,7 @@
 @group(1) @binding(6) var shadow_compare: sampler_comparison;
 @group(1) @binding(7) var<uniform> shadow: Shadow;
 @group(1) @binding(8) var media: texture_2d_array<f32>;
+@group(1) @binding(9) var refracted: texture_2d_array<f32>;
 @group(1) @binding(12) var mirror_scatter: texture_3d<f32>;
 @group(1) @binding(13) var<uniform> mirror: ViewTable;
 @group(2) @binding(0) var albedo_map: texture_2d<f32>;
@@ -189,45 +191,53 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
     let slope = length(gradient);
     let near = 1.0 - smoothstep(2.0e4, 4.0e5, distance);
 
-    let sun = vec3<f32>(dot(body.sun.xyz, body.fixed_x.xyz), dot(body.sun.xyz, body.fixed_y.xyz), dot(body.sun.xyz, body.fixed_z.xyz));
-    let mu_s = dot(sun, up);
     let icrf = body.fixed_x.xyz * in.point.x + body.fixed_y.xyz * in.point.y + body.fixed_z.xyz * in.point.z;
-    let light = daylight(body, frame.star, icrf, airs.list[u32(max(body.ids.z, 0))], transmittance, irradiance, linear);
-    let direct = body.illuminance.rgb * light.sun * ship_shadow(shadow, shadow_map, shadow_compare, icrf, body.sun.w);
-    let sky = body.illuminance.rgb * light.sky + STARLIGHT_LX;
-
-    var luminance: vec3<f32>;
-    if wet {
-        // The sea: light from below by depth, the sky's mirror image, the sun's glint.
-        let shallow = exp(min(height, 0.0) / 9.0) * near;
-        let below = mix(vec3<f32>(0.0035, 0.012, 0.026), vec3<f32>(0.05, 0.12, 0.11), shallow * 0.7);
-        let foam = shallow * near * smoothstep(0.25, 0.6, w0 + 0.6 * w2 + 0.4) * smoothstep(-0.6, 0.0, height) * near;
-        let fresnel = water_fresnel(max(dot(up, view), 0.0) * 0.9 + 0.08);
-        var mirrored = sky / PI;
-        var share = fresnel;
-        if mirror.ids.x == body.ids.x {
-            let air = airs.list[u32(max(body.ids.z, 0))];
-            mirrored = body.illuminance.rgb * eclipse_visible(body, frame.star, icrf)
-                * view_mirrored(air, media, body.ids.z, mirror, mirror_scatter, linear, up, view, sun);
-            share = 1.0 - max(dot(up, view), 0.0);  // [Elek 2008, eq. 3.8]
+    var m = Material(tint * (1.0 + 0.16 * coarse + 0.20 * fine), 1.0);
+    if paint.kind.x == 2u {
+        m = living_ground(tint, height, slope, latitude, coarse, fine, near);
+    } else if paint.kind.x == 1u {
+        m.albedo *= mix(paint.province.z, 1.0, paint_province(paint, up));
+    }
+    var luminance = vec3<f32>(0.0);
+    for (var k = 0u; k < light_count(body); k++) {
+        let by = in_light(body, k);
+        let sun = fixed_from_icrf(body, by.sun.xyz);
+        let mu_s = dot(sun, up);
+        let light = daylight(by, frame.star, icrf, airs.list[u32(max(body.ids.z, 0))], transmittance, irradiance, refracted, linear);
+        var direct = by.illuminance.rgb * light.sun;
+        var sky = by.illuminance.rgb * light.sky;
+        if k == 0u {
+            direct *= ship_shadow(shadow, shadow_map, shadow_compare, icrf, body.sun.w);
+            sky += STARLIGHT_LX;
         }
-        luminance = mix(below, vec3<f32>(0.6), foam) / PI * (direct * max(mu_s, 0.0) + sky) * (1.0 - share)
-            + mirrored * share
-            + direct * water_glint(up, view, sun, SEA_SLOPES) * (1.0 - foam);
-    } else {
-        var m = Material(tint * (1.0 + 0.16 * coarse + 0.20 * fine), 1.0);
-        if paint.kind.x == 2u {
-            m = living_ground(tint, height, slope, latitude, coarse, fine, near);
-        } else if paint.kind.x == 1u {
-            m.albedo *= mix(paint.province.z, 1.0, paint_province(paint, up));
+        if wet {
+            // The sea: light from below by depth, the sky's mirror image, the glint.
+            let shallow = exp(min(height, 0.0) / 9.0) * near;
+            let below = mix(vec3<f32>(0.0035, 0.012, 0.026), vec3<f32>(0.05, 0.12, 0.11), shallow * 0.7);
+            let foam = shallow * near * smoothstep(0.25, 0.6, w0 + 0.6 * w2 + 0.4) * smoothstep(-0.6, 0.0, height) * near;
+            let fresnel = water_fresnel(max(dot(up, view), 0.0) * 0.9 + 0.08);
+            var mirrored = sky / PI;
+            var share = fresnel;
+            if mirror.ids.x == body.ids.x {
+                let air = airs.list[u32(max(body.ids.z, 0))];
+                mirrored = by.illuminance.rgb * eclipse_visible(by, frame.star, icrf)
+                    * view_mirrored(air, media, body.ids.z, mirror, mirror_scatter, linear, up, view, sun);
+                share = 1.0 - max(dot(up, view), 0.0);  // [Elek 2008, eq. 3.8]
+            }
+            luminance += mix(below, vec3<f32>(0.6), foam) / PI * (direct * max(mu_s, 0.0) + sky) * (1.0 - share)
+                + mirrored * share
+                + direct * water_glint(up, view, sun, SEA_SLOPES) * (1.0 - foam);
+        } else {
+            var lit = sun_cosine(dot(normal, sun), by.sun.w);
+            if paint.kind.x == 1u {
+                lit = regolith_response(lit, max(dot(normal, view), 0.0), dot(sun, view)) * step(1e-6, lit);
+            }
+            // Hollows see less of the sky: half-way between open ground and the slope's own share.
+            luminance += max(m.albedo, vec3<f32>(0.0)) / PI * (direct * lit + sky * (0.5 + 0.5 * dot(normal, up)));
         }
-        var lit = sun_cosine(dot(normal, sun), body.sun.w);
-        if paint.kind.x == 1u {
-            lit = regolith_response(lit, max(dot(normal, view), 0.0), dot(sun, view)) * step(1e-6, lit);
-        }
-        // Hollows see less of the sky: half-way between open ground and the slope's own share.
-        luminance = max(m.albedo, vec3<f32>(0.0)) / PI * (direct * lit + sky * (0.5 + 0.5 * dot(normal, up)));
-        luminance += night * (1.0 - smoothstep(-0.1, 0.05, mu_s));
+    }
+    if !wet {
+        luminance += night * (1.0 - smoothstep(-0.1, 0.05, dot(fixed_from_icrf(body, body.sun.xyz), up)));
     }
     return vec4<f32>(to_hdr(luminance, exposure.pre), 1.0);
 }

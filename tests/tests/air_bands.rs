@@ -39,7 +39,7 @@ fn earth() -> SpectralMedium {
 
 fn drawn(spectral: bool) -> Air {
     let (medium, bands) = earth().draw(spectral, &Starlight::Sun).expect("it is sound");
-    Air { medium, bands, model: Model::default() }
+    Air { bands, ..Air::from(medium) }
 }
 
 /// Linear sRGB per unit of the Sun's channel, by all wavelengths.

@@ -60,7 +60,22 @@ fn mirrored_structs_have_the_layout_of_their_twins() {
         (
             "lib/frame.wgsl",
             "Body",
-            fields!(rust::BodyUniform { centre, fixed_x, fixed_y, fixed_z, up, sun, illuminance, albedo, ids, occluders }),
+            fields!(rust::BodyUniform {
+                centre,
+                fixed_x,
+                fixed_y,
+                fixed_z,
+                up,
+                sun,
+                illuminance,
+                albedo,
+                ids,
+                lights,
+                second,
+                second_illuminance,
+                casters,
+                occluders
+            }),
         ),
         ("lib/frame.wgsl", "Bodies", fields!(rust::BodiesUniform { list })),
         ("lib/frame.wgsl", "Exposure", fields!(rust::ExposureUniform { pre, final_, average, settled })),

@@ -13,7 +13,7 @@ const TOP: f64 = 8.0e4;
 
 fn air(model: LimbTable, top_altitude_m: f64) -> Air {
     let medium = Medium { bottom_radius_m: R, top_altitude_m, ground_albedo: Vec3::ZERO, layers: Vec::new() };
-    Air { medium, bands: None, model: Model::LimbTable(model) }
+    Air { model: Model::LimbTable(model), ..Air::from(medium) }
 }
 
 fn vec4(v: DVec3, w: f64) -> [f32; 4] {

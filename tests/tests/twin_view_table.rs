@@ -36,7 +36,7 @@ fn vec4(v: DVec3, w: f64) -> [f32; 4] {
 }
 
 fn ask(gpu: &Gpu, medium: &Medium, model: &ViewTable, rays: &[ProbeRay]) -> Vec<ProbeLight> {
-    let air = Air { medium: medium.clone(), bands: None, model: Model::ViewTable(model.clone()) };
+    let air = Air { model: Model::ViewTable(model.clone()), ..Air::from(medium.clone()) };
     let found = probe(gpu, &ShaderLibrary::checkout(), &air, rays, &ProbeOptions::default()).expect("it is probed");
     assert_eq!(gpu.take_error(), None);
     found
@@ -221,7 +221,7 @@ fn the_ground_is_lit_by_its_own_tables() {
     for delta_deg in [20.0, 60.0, 85.0_f64] {
         let delta = delta_deg.to_radians();
         let sun = DVec3::new(delta.sin(), 0.0, delta.cos());
-        let air = Air { medium: medium.clone(), bands: None, model: Model::ViewTable(model.clone()) };
+        let air = Air { model: Model::ViewTable(model.clone()), ..Air::from(medium.clone()) };
         let scene = looking_down(&medium, air, sun);
         renderer.render(&gpu, &scene, Target::Image(&image), None).expect("it is drawn");
         let found = renderer.read_hdr(&gpu).expect("it is read").rgba;

@@ -2,14 +2,15 @@
 //!
 //! [`density`] is what drags (temperature, pressure, density); [`medium`] is what one sees (coefficients of scattering and
 //! absorption), and [`optics`] what these are for a gas of known molecules; [`model`] is how the picture finds the light of it;
-//! [`reference`] integrates light through a medium in f64, slowly, and judges the tables and the shaders; [`spectral`] is air by wavelength,
-//! and how few wavelengths do for all.
+//! [`reference`] integrates light through a medium in f64, slowly, and judges the tables and the shaders; [`refraction`] is the light that
+//! air bends into its planet's shadow; [`spectral`] is air by wavelength, and how few wavelengths do for all.
 
 pub mod density;
 pub mod medium;
 pub mod model;
 pub mod optics;
 pub mod reference;
+pub mod refraction;
 pub mod spectral;
 mod us76;
 

@@ -256,6 +256,18 @@ impl Gas {
         self.scale_height_m.unwrap_or_else(|| scale_height_m(self.temperature_k, self.molar_mass(), gravity_m_s2))
     }
 
+    /// Refractivity n − 1 at the datum, at a wavelength in m: each molecule's, by its density [Gladstone & Dale 1863].
+    pub fn refractivity(&self, wavelength_m: f64) -> f64 {
+        match &self.refraction {
+            Refraction::Molecules(parts) => {
+                let all: f64 = parts.iter().map(|p| p.1).sum();
+                let part = |(m, share): &(Molecule, f64)| share * m.refractivity(wavelength_m).0 / m.refractivity(wavelength_m).1;
+                self.molecular_density_per_m3() / all * parts.iter().map(part).sum::<f64>()
+            }
+            Refraction::Index { index, .. } => index_at(index, wavelength_m) - 1.0,
+        }
+    }
+
     /// Rayleigh scattering coefficient at the datum, m⁻¹, at a wavelength in m.
     pub fn scattering_per_m(&self, wavelength_m: f64) -> f64 {
         let density = self.molecular_density_per_m3();

@@ -10,7 +10,7 @@ use super::targets::Targets;
 use super::{Overlay, RenderError, Renderer, Target};
 use crate::gpu::Gpu;
 use crate::scene::gpu_data::ExposureUniform;
-use crate::scene::{AutoOr, Snapshot};
+use crate::scene::{AutoOr, Snapshot, second_light};
 
 /// Pre-exposure before anything is known: half floats then hold luminances from 1e-5 to 6e6 cd/m².
 pub const STARTING_PRE: f32 = 0.01;
@@ -80,13 +80,21 @@ fn metering(gpu: &Gpu, scene: &Snapshot, size: [u32; 2]) -> (Snapshot, Targets) 
     (small, Targets::new(gpu, size))
 }
 
-/// Everything that shines, in this order: air tables and those of its models, tile heights, shadow, smooth bodies, terrain, ships, stars and the sun's
+/// Everything that shines, in this order: air tables, light bent into shadows, tables of the airs' models, tile heights, shadow, smooth bodies, terrain, ships, stars and the sun's
 /// disc, sky (which lays every air over `opaque` and its depth). The value is the finished light: the HDR texture that the picture is made of.
 fn light(f: &mut FrameContext<'_>, passes: &mut Passes) -> Result<wgpu::TextureView, RenderError> {
     f.clear_opaque();
 
     let skip = passes.air_tables.skip(f.scene);
     let air = if f.runs("air_tables", skip) { passes.air_tables.record(f) } else { passes.air_tables.values() };
+
+    let skip = passes.refracted.skip();
+    if f.runs("refracted", skip) {
+        passes.refracted.record(f);
+    }
+
+    // No pass of its own: where a world shines on another, what that other shows is lit twice.
+    f.runs("second_light", second_light::skip(f.scene));
 
     let skip = passes.sky.plan(f);
     if f.runs("sky_tables", skip) {
@@ -106,7 +114,7 @@ fn light(f: &mut FrameContext<'_>, passes: &mut Passes) -> Result<wgpu::TextureV
     let skip = passes.shadow.skip(f.scene);
     let shadow = if f.runs("shadow", skip) { passes.shadow.record(f, &mut passes.ship_geometry) } else { passes.no_shadow.clone() };
 
-    let light = f.shared.light_group(f.gpu, &air, passes.sky.mirror(f.scene), &shadow);
+    let light = f.shared.light_group(f.gpu, &air, &passes.refracted.table(), passes.sky.mirror(f.scene), &shadow);
 
     let skip = passes.smooth_body.skip(f.scene);
     if f.runs("smooth_body", skip) {

@@ -207,9 +207,9 @@ impl Renderer {
     ) -> Result<(FrameContext<'a>, &'a mut Passes), RenderError> {
         let targets = own_targets.or(self.targets.as_ref()).ok_or(RenderError::NothingDrawn)?;
         let number = if scene.adapt_s.is_some() { self.number } else { 0 };
-        let air_slots = self.passes.air_slots(scene);
+        let layers = self.passes.layers(scene);
         self.shared.frame.write(&gpu.queue, &FrameUniform::new(scene, number));
-        self.shared.bodies.write(&gpu.queue, &BodiesUniform::new(scene, |i| air_slots.get(i).copied().flatten()));
+        self.shared.bodies.write(&gpu.queue, &BodiesUniform::new(scene, |i| layers.get(i).cloned().unwrap_or_default()));
         self.timer.poll(gpu);
         self.timer.begin_frame();
         let context = FrameContext {
@@ -219,7 +219,7 @@ impl Renderer {
             shared: &self.shared,
             targets,
             maps: &self.maps,
-            air_slots,
+            air_slots: layers.iter().map(|l| l.air).collect(),
             timer: (own_targets.is_none() && self.options.measure).then_some(&mut self.timer),
             report: FrameReport::default(),
         };

@@ -3,7 +3,7 @@
 //! | group | holds | who makes it |
 //! |---|---|---|
 //! | 0 | 0 `Frame`, 1 `Bodies`, 2 `Exposure` (all uniform; `shaders/lib/frame.wgsl`) | [`Shared`], each frame |
-//! | 1 | 0 airs (uniform), 1 transmittance, 2 further orders (3-D), 3 irradiance (1, 3: 2-D arrays, a layer per air slot), 4 linear sampler, 5 shadow map, 6 comparison sampler, 7 shadow (uniform), 8 media (2-D array, loaded), 12 scattering (3-D) and 13 `ViewTable` (uniform) of the world whose water mirrors them | [`Shared::light_group`], from the values of the air-table, sky and shadow passes |
+//! | 1 | 0 airs (uniform), 1 transmittance, 2 further orders (3-D), 3 irradiance (1, 3: 2-D arrays, a layer per air slot), 4 linear sampler, 5 shadow map, 6 comparison sampler, 7 shadow (uniform), 8 media (2-D array, loaded), 9 refracted light (2-D array, loaded, a layer per planet), 12 scattering (3-D) and 13 `ViewTable` (uniform) of the world whose water mirrors them | [`Shared::light_group`], from the values of the air-table, refracted, sky and shadow passes |
 //! | 2, 3 | the pass's own | the pass |
 
 use super::maps::MapStore;
@@ -116,6 +116,7 @@ impl Shared {
                 sampler_entry(6, wgpu::SamplerBindingType::Comparison),
                 uniform_entry(7),
                 loaded_entry(8, array),
+                loaded_entry(9, array),
                 texture_entry(12, wgpu::TextureViewDimension::D3),
                 uniform_entry(13),
             ],
@@ -151,8 +152,15 @@ impl Shared {
         self.exposure_next.write(&gpu.queue, value);
     }
 
-    /// Group 1 from the values of the air-table, sky and shadow passes.
-    pub fn light_group(&self, gpu: &Gpu, air: &AirTables, mirror: &Mirror, shadow: &ShadowMap) -> wgpu::BindGroup {
+    /// Group 1 from the values of the air-table, refracted, sky and shadow passes.
+    pub fn light_group(
+        &self,
+        gpu: &Gpu,
+        air: &AirTables,
+        refracted: &wgpu::TextureView,
+        mirror: &Mirror,
+        shadow: &ShadowMap,
+    ) -> wgpu::BindGroup {
         use wgpu::BindingResource::{Sampler, TextureView};
         let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
         gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
@@ -168,6 +176,7 @@ impl Shared {
                 entry(6, Sampler(&self.compare)),
                 entry(7, shadow.uniform.as_entire_binding()),
                 entry(8, TextureView(&air.media)),
+                entry(9, TextureView(refracted)),
                 entry(12, TextureView(&mirror.scatter)),
                 entry(13, mirror.uniform.as_entire_binding()),
             ],

@@ -9,6 +9,7 @@ pub use super::gpu_air::{
     AirUniform, AirsUniform, MAX_AIRS, MEDIA_COLUMNS, MEDIA_ROWS, PhasesUniform, SKY_SETTINGS, SKY_SINGLE, SkySettings, SkyUniform,
     ViewTableUniform, media_rows,
 };
+use super::second_light::{self, SecondLight};
 use super::{Body, Camera, Ship, Snapshot, Surface};
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
@@ -47,6 +48,10 @@ pub struct BodyUniform {
     pub illuminance: [f32; 4],
     pub albedo: [f32; 4],
     pub ids: [i32; 4],
+    pub lights: [i32; 4],
+    pub second: [f32; 4],
+    pub second_illuminance: [f32; 4],
+    pub casters: [[i32; 4]; 2],
     pub occluders: [[f32; 4]; MAX_OCCLUDERS],
 }
 
@@ -95,11 +100,23 @@ impl FrameUniform {
     }
 }
 
+/// Where the tables lie that a body is lit by.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Layers {
+    /// Slot of its air's.
+    pub air: Option<u32>,
+    /// Layer of the light that its own air bends into its shadow.
+    pub own: Option<u32>,
+    /// The same of each of its occluders.
+    pub casters: [Option<u32>; MAX_OCCLUDERS],
+}
+
 impl BodyUniform {
-    /// From the snapshot; `air_slot` is the layer of its tables, if it has air.
+    /// From the snapshot; `second`: the body's other light.
     #[allow(clippy::cast_possible_truncation)]
-    pub fn new(body: &Body, air_slot: Option<u32>) -> Self {
+    pub fn new(body: &Body, layers: &Layers, second: Option<SecondLight>) -> Self {
         let axis = |v: Vec3| vec4(body.icrf_from_fixed * v, 0.0);
+        let layer = |l: Option<u32>| l.map_or(-1, |l| l as i32);
         let mut occluders = [[0.0; 4]; MAX_OCCLUDERS];
         for (slot, o) in occluders.iter_mut().zip(&body.occluders) {
             *slot = vec4(o.centre_m, o.radius_m);
@@ -116,9 +133,18 @@ impl BodyUniform {
             ids: [
                 i32::from(body.id),
                 body.occluders.len().min(MAX_OCCLUDERS) as i32,
-                air_slot.map_or(-1, |s| s as i32),
+                layer(layers.air),
                 i32::from(matches!(body.surface, Surface::Tiles(_))),
             ],
+            lights: [
+                i32::from(layers.casters.iter().any(Option::is_some)),
+                layer(layers.own),
+                i32::from(second.is_some()),
+                i32::from(second.is_some_and(|l| l.share > 0.0) && second_light::star_is_gone(body)),
+            ],
+            second: second.map_or([0.0; 4], |l| vec4(l.direction, l.angular_radius_rad)),
+            second_illuminance: second.map_or([0.0; 4], |l| vec4(l.illuminance_lx * l.share, 0.0)),
+            casters: [0, 4].map(|i| [0, 1, 2, 3].map(|k| layer(layers.casters[i + k]))),
             occluders,
         }
     }
@@ -137,11 +163,12 @@ impl ExposureUniform {
 }
 
 impl BodiesUniform {
-    /// From the snapshot; `air_slot(i)` is the slot of body `i`'s air tables.
-    pub fn new(scene: &Snapshot, air_slot: impl Fn(usize) -> Option<u32>) -> Self {
+    /// From the snapshot; `layers(i)` is where body `i`'s tables lie. A second light that does not count is there in a forced frame alone.
+    pub fn new(scene: &Snapshot, layers: impl Fn(usize) -> Layers) -> Self {
         let mut all = Self::zeroed();
         for (i, (slot, body)) in all.list.iter_mut().zip(&scene.bodies).enumerate() {
-            *slot = BodyUniform::new(body, air_slot(i));
+            let second = SecondLight::of(scene, i).filter(|l| l.share > 0.0 || scene.force.all);
+            *slot = BodyUniform::new(body, &layers(i), second);
         }
         all
     }

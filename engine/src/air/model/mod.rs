@@ -14,6 +14,7 @@ pub mod view_space;
 pub mod view_table;
 
 use super::Medium;
+use super::refraction::Refractive;
 use super::spectral::Bands;
 use serde::{Deserialize, Serialize};
 
@@ -53,6 +54,8 @@ pub struct Air {
     pub medium: Medium,
     /// The same in six bands, where [`Model::Physical`] is to draw it by those; everything else draws by `medium`.
     pub bands: Option<Box<Bands>>,
+    /// What of it bends light into the planet's shadow.
+    pub gases: Vec<Refractive>,
     /// The model and its settings.
     pub model: Model,
 }
@@ -60,6 +63,6 @@ pub struct Air {
 impl From<Medium> for Air {
     /// The default model.
     fn from(medium: Medium) -> Self {
-        Self { medium, bands: None, model: Model::default() }
+        Self { bands: None, gases: Refractive::of_medium(&medium), model: Model::default(), medium }
     }
 }

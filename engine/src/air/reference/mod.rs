@@ -8,7 +8,7 @@
 //! Definitions are those of the reference data: the sun is a uniform disc at infinity; direct light at a point is scaled by the
 //! fraction of the disc above the straight local horizon and outside of every occluder; transmittance is taken towards the disc's centre, held
 //! at the horizon; scattering angles count from the disc's centre. The ground is a Lambert sphere; ground that is seen directly, and the
-//! sun itself, add nothing to the radiance. No refraction, no polarisation. An eye at or below the datum stands on the ground.
+//! sun itself, add nothing to the radiance. No refraction (but in [`umbra`], the light in a planet's shadow), no polarisation. An eye at or below the datum stands on the ground.
 
 mod chords;
 mod first;
@@ -17,6 +17,7 @@ mod random;
 mod scatter;
 pub mod single;
 mod space;
+pub mod umbra;
 mod walk;
 
 use super::medium::Medium;

@@ -19,6 +19,7 @@ pub use bands::{Bands, rgb};
 use super::RangeError;
 use super::medium::{Layer, Medium, Phase, Profile};
 use super::optics::{Aerosol, Gas};
+use super::refraction::{Refractive, refractivity_of_scattering};
 use crate::light::spectrum::{Starlight, linear_at};
 use crate::space::relative::narrow3;
 use crate::units::NM;
@@ -26,6 +27,8 @@ use glam::DVec3;
 
 /// Molecules per m² of one Dobson unit.
 const DOBSON_PER_M2: f64 = 2.6868e20;
+/// Wavelength whose refraction stands for all, m.
+const REFRACTED_M: f64 = 550.0 * NM;
 /// Steps of the integral over a layer's height.
 const HEIGHT_STEPS: u32 = 512;
 
@@ -191,6 +194,19 @@ impl SpectralMedium {
     pub(crate) fn shape(&self) -> Medium {
         let (bottom_radius_m, top_altitude_m) = (self.bottom_radius_m, self.top_altitude_m);
         Medium { bottom_radius_m, top_altitude_m, ground_albedo: glam::Vec3::ZERO, layers: Vec::new() }
+    }
+
+    /// What of it bends light: its gases; of layers by three numbers those that scatter like one.
+    pub fn refractive(&self) -> Vec<Refractive> {
+        let refractivity = |layer: &SpectralLayer| match &layer.optics {
+            Optics::Gas(gas) => Some(gas.refractivity(REFRACTED_M)),
+            Optics::Channels(scattering, _) if layer.phase == Phase::Rayleigh => {
+                Some(refractivity_of_scattering(self.through(*scattering, REFRACTED_M)))
+            }
+            _ => None,
+        };
+        let sound = |l: &SpectralLayer| refractivity(l).filter(|x| x.is_finite() && *x > 0.0).map(|x| (x, l.profile.clone()));
+        self.layers.iter().filter_map(sound).map(|(refractivity, profile)| Refractive { refractivity, profile }).collect()
     }
 
     /// True when every layer is given by three numbers: then they are the channels as they stand.

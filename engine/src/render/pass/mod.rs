@@ -8,6 +8,7 @@ pub mod air_tables;
 pub mod baseline_hillaire;
 pub mod bloom;
 pub mod exposure;
+pub mod refracted;
 pub mod shadow;
 pub mod ship_mesh;
 pub mod ships;
@@ -25,6 +26,7 @@ use super::maps::MapStore;
 use super::shared::{ShadowMap, Shared};
 use crate::gpu::{Gpu, ShaderLibrary};
 use crate::scene::Snapshot;
+use crate::scene::gpu_data::Layers;
 
 /// All passes, compiled.
 pub struct Passes {
@@ -32,6 +34,8 @@ pub struct Passes {
     pub air_tables: air_tables::AirBaker,
     /// What the shadow map is while no ship throws a shadow.
     pub no_shadow: ShadowMap,
+    /// Light that air bends into shadows.
+    pub refracted: refracted::Refracted,
     /// Spheres without terrain.
     pub smooth_body: smooth_body::SmoothBody,
     /// The ship's shadow.
@@ -62,6 +66,7 @@ impl Passes {
         Ok(Self {
             air_tables: air_tables::AirBaker::new(gpu, shaders)?,
             no_shadow: ShadowMap::none(gpu),
+            refracted: refracted::Refracted::new(gpu),
             smooth_body: smooth_body::SmoothBody::new(gpu, shaders, shared, maps)?,
             shadow: shadow::ShipShadow::new(gpu, shaders, shared)?,
             terrain: terrain::Terrain::new(gpu, shaders, shared, maps)?,
@@ -76,8 +81,10 @@ impl Passes {
         })
     }
 
-    /// The slot of the air tables of each body of the scene.
-    pub fn air_slots(&mut self, scene: &Snapshot) -> Vec<Option<u32>> {
-        self.air_tables.assign(scene)
+    /// Where the tables of each body of the scene lie.
+    pub fn layers(&mut self, scene: &Snapshot) -> Vec<Layers> {
+        let mut all = self.refracted.assign(scene);
+        all.iter_mut().zip(self.air_tables.assign(scene)).for_each(|(layers, air)| layers.air = air);
+        all
     }
 }

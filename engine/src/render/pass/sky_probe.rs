@@ -8,8 +8,8 @@ use crate::gpu::{Gpu, ShaderLibrary, readback};
 use crate::render::RenderError;
 use crate::render::pipeline::{compute_pipeline, uniform_entry};
 use crate::render::shared::{Mirror, ShadowMap, Shared};
-use crate::scene::gpu_data::{BodiesUniform, BodyUniform, FrameUniform, MAX_OCCLUDERS, SKY_SINGLE, SkyUniform, vec4};
-use crate::scene::{Body, Occluder, Surface};
+use crate::scene::gpu_data::{BodiesUniform, BodyUniform, FrameUniform, Layers, MAX_OCCLUDERS, SKY_SINGLE, SkyUniform, vec4};
+use crate::scene::{Body, Occluder, SecondLight, Surface};
 use crate::space::relative::narrow;
 use bytemuck::{Pod, Zeroable};
 use glam::{Quat, Vec3};
@@ -49,11 +49,13 @@ pub struct ProbeOptions {
     pub occluders: Vec<Occluder>,
     /// Centre (from the body's, m) and radius of the star, for occluders; `None`: at infinity, where each ray has its sun.
     pub star: Option<(Vec3, f32)>,
+    /// A second light, its illuminance in units of the sun's.
+    pub second: Option<SecondLight>,
 }
 
 impl Default for ProbeOptions {
     fn default() -> Self {
-        Self { steps: STEPS, multiple: true, occluders: Vec::new(), star: None }
+        Self { steps: STEPS, multiple: true, occluders: Vec::new(), star: None, second: None }
     }
 }
 
@@ -91,7 +93,7 @@ impl Prober {
         painter.bake(gpu, &mut encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default()));
         gpu.submit(encoder);
 
-        let light = shared.light_group(gpu, &tables, &Mirror::none(gpu), &ShadowMap::none(gpu));
+        let light = shared.light_group(gpu, &tables, &tables.media, &Mirror::none(gpu), &ShadowMap::none(gpu));
         let storage = |binding, read_only| wgpu::BindGroupLayoutEntry {
             binding,
             visibility: wgpu::ShaderStages::COMPUTE,
@@ -121,7 +123,7 @@ impl Prober {
         }
         let body = alone(&self.air, options);
         let mut bodies = BodiesUniform::zeroed();
-        bodies.list[0] = BodyUniform::new(&body, Some(0));
+        bodies.list[0] = BodyUniform::new(&body, &Layers { air: Some(0), ..Layers::default() }, options.second);
         self.shared.bodies.write(&gpu.queue, &bodies);
         let mut frame = FrameUniform::zeroed();
         let (centre_m, radius_m) = options.star.unwrap_or((Vec3::Z, 0.0));

@@ -136,7 +136,8 @@ fn look_of(r: &Reader<'_>, datum: Datum, setting: &Setting<'_>) -> Option<(Air, 
         return None;
     }
     let (medium, bands) = drawn?;
-    Some((Air { medium, bands, model: model? }, by_wavelength))
+    let gases = by_wavelength.refractive();
+    Some((Air { medium, bands, gases, model: model? }, by_wavelength))
 }
 
 /// The model that a word names, with the settings in the table of that name.

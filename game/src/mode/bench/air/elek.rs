@@ -121,7 +121,7 @@ fn fly_one(gpu: &Gpu, test: &Test, full: bool) -> Result<Flight, StudioError> {
     let image = OffscreenImage::new(gpu, size_px);
     let entries = if full { 256 } else { 64 } / if test.halved { 2 } else { 1 };
     let model = ViewTable { height_size: entries, view_size: entries, sun_size: entries, ..ViewTable::full() };
-    let air = test.air.then(|| Air { medium: planet(), bands: None, model: Model::ViewTable(model) });
+    let air = test.air.then(|| Air { model: Model::ViewTable(model), ..Air::from(planet()) });
     let relief = Arc::new(relief());
     let surface = if test.fine_mesh { Surface::Tiles(mesh(&relief)) } else { Surface::Smooth };
     let vertices = if let Surface::Tiles(set) = &surface { set.tiles.len() * TILE_VERTICES } else { BALL_VERTICES };

@@ -1,0 +1,60 @@
+// Refracted light: what of the star reaches a point behind a planet, round its limb and through its air, in colour.
+//
+// The table and its meaning: engine/src/air/refraction/shade.rs, `Shade::read` is the twin of `refracted_light`. A layer per planet whose
+// shadow falls on something drawn (Body.casters, Body.lights.y); bind from group 1: @binding(9) refracted: texture_2d_array<f32>.
+
+#include "lib/sunlight.wgsl"
+
+const REFRACTED_COLUMNS: u32 = 127u;
+const REFRACTED_ROWS: u32 = 160u;
+const REFRACTED_PER_OCTAVE: f32 = 10.0;
+
+// Light over that of the free disc. `limb` is limb_of_sphere's, of a planet of this radius at this distance.
+fn refracted_light(table: texture_2d_array<f32>, layer: i32, radius: f32, distance: f32, limb: vec3<f32>) -> vec3<f32> {
+    let nearest = textureLoad(table, vec2<u32>(REFRACTED_COLUMNS, 0u), layer, 0).z;
+    let to_limb = sqrt(max(distance - radius, 0.0) * (distance + radius));
+    let v = min(log2(max(to_limb / max(nearest, 1.0), 1.0)) * REFRACTED_PER_OCTAVE, f32(REFRACTED_ROWS) - 1.001);
+    let row = u32(v);
+    let part = v - f32(row);
+    let span = mix(
+        textureLoad(table, vec2<u32>(REFRACTED_COLUMNS, row), layer, 0).xy,
+        textureLoad(table, vec2<u32>(REFRACTED_COLUMNS, row + 1u), layer, 0).xy, part);
+    let x = sqrt(clamp((limb.y + span.x) / max(span.x + span.y, 1e-9), 0.0, 1.0)) * f32(REFRACTED_COLUMNS - 1u);
+    let column = min(u32(x), REFRACTED_COLUMNS - 2u);
+    let t = x - f32(column);
+    let a = mix(textureLoad(table, vec2<u32>(column, row), layer, 0).rgb, textureLoad(table, vec2<u32>(column + 1u, row), layer, 0).rgb, t);
+    let b = mix(textureLoad(table, vec2<u32>(column, row + 1u), layer, 0).rgb, textureLoad(table, vec2<u32>(column + 1u, row + 1u), layer, 0).rgb, t);
+    let root = mix(a, b, part);
+    return root * root * root * root;
+}
+
+// Light of the star at a point, over that of the free disc: past worlds without air as eclipse_visible, past others through their air.
+fn eclipse_light(body: Body, star: vec4<f32>, point: vec3<f32>, table: texture_2d_array<f32>) -> vec3<f32> {
+    var out = vec3<f32>(1.0);
+    let to_star = star.xyz - point;
+    let distance = length(to_star);
+    let sun = to_star / distance;
+    let sun_rad = asin_small(star.w / distance);
+    let count = min(u32(max(body.ids.y, 0)), MAX_OCCLUDERS);
+    for (var i = 0u; i < count; i++) {
+        let offset = body.occluders[i].xyz - point;
+        let away = length(offset);
+        if away > distance {
+            continue;
+        }
+        let limb = limb_of_sphere(sun, offset, body.occluders[i].w);
+        let layer = body.casters[i / 4u][i % 4u];
+        if layer >= 0 {
+            out *= refracted_light(table, layer, body.occluders[i].w, away, limb);
+        } else {
+            out *= visible_behind_limb(sun_rad, limb.x, limb.y);
+        }
+    }
+    return out;
+}
+
+// The same behind the body itself, for points above its air; Body.lights.y is the layer.
+fn own_limb_light(body: Body, star: vec4<f32>, point: vec3<f32>, altitude: f32, table: texture_2d_array<f32>) -> vec3<f32> {
+    let limb = limb_of_sphere(normalize(star.xyz - point), body.centre.xyz - point, body.centre.w);
+    return refracted_light(table, body.lights.y, body.centre.w, body.centre.w + altitude, limb);
+}
