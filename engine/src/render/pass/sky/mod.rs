@@ -20,7 +20,7 @@ use crate::gpu::buffer::Uniform;
 use crate::gpu::texture::Texture;
 use crate::gpu::{Gpu, ShaderLibrary};
 use crate::render::RenderError;
-use crate::render::pipeline::{PipelineKind, depth_entry, texture_entry, uniform_entry};
+use crate::render::pipeline::{PipelineKind, depth_entry, storage_entry, texture_entry};
 use crate::render::report::AirReport;
 use crate::render::shared::{FrameContext, Mirror, Shared};
 use crate::render::targets::HDR;
@@ -166,7 +166,7 @@ pub fn painter(parts: &Parts<'_>, model: &Model) -> Result<Box<dyn Painter>, Ren
 pub fn picture_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
     gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some("group 2: picture"),
-        entries: &[texture_entry(0, wgpu::TextureViewDimension::D2), depth_entry(1), uniform_entry(2)],
+        entries: &[texture_entry(0, wgpu::TextureViewDimension::D2), depth_entry(1), storage_entry(2)],
     })
 }
 
@@ -189,7 +189,7 @@ impl Sky {
         let picture = picture_layout(gpu);
         let parts = Parts { gpu, shaders, shared, picture: &picture };
         let painters = PAINTERS.iter().map(|make| make(&parts)).collect::<Result<Vec<_>, _>>()?;
-        let uniforms = (0..MAX_AIRS).map(|_| Uniform::new(&gpu.device, "Sky", wgpu::BufferUsages::empty())).collect();
+        let uniforms = (0..MAX_AIRS).map(|_| Uniform::new(&gpu.device, "Sky", wgpu::BufferUsages::STORAGE)).collect();
         Ok(Self { steps: STEPS, picture, painters, uniforms, chosen: Vec::new(), no_mirror: Mirror::none(gpu), in_aerial: false })
     }
 
