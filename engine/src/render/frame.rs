@@ -88,7 +88,7 @@ fn light(f: &mut FrameContext<'_>, passes: &mut Passes) -> Result<wgpu::TextureV
     let skip = passes.air_tables.skip(f.scene);
     let air = if f.runs("air_tables", skip) { passes.air_tables.record(f) } else { passes.air_tables.values() };
 
-    let skip = passes.sky.plan(f);
+    let skip = passes.sky.plan(f, &passes.air_tables);
     if f.runs("sky_tables", skip) {
         passes.sky.record_tables(f);
     }

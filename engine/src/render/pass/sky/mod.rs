@@ -20,6 +20,7 @@ use crate::gpu::buffer::Uniform;
 use crate::gpu::texture::Texture;
 use crate::gpu::{Gpu, ShaderLibrary};
 use crate::render::RenderError;
+use crate::render::pass::air_tables::AirBaker;
 use crate::render::pipeline::{PipelineKind, depth_entry, storage_entry, texture_entry};
 use crate::render::report::AirReport;
 use crate::render::shared::{FrameContext, Mirror, Shared};
@@ -194,7 +195,7 @@ impl Sky {
     }
 
     /// Chooses what to draw and why the rest is not; then tells why no model has tables of its own to make.
-    pub fn plan(&mut self, f: &mut FrameContext<'_>) -> Option<String> {
+    pub fn plan(&mut self, f: &mut FrameContext<'_>, tables: &AirBaker) -> Option<String> {
         self.in_aerial = false;
         self.chosen = choose::choose(f.scene, &f.air_slots);
         for choice in &self.chosen {
@@ -204,6 +205,7 @@ impl Sky {
                 ran: choice.skip.is_none(),
                 reason: choice.skip.clone().unwrap_or_else(|| choice.reason.clone()),
                 covers: choice.rect.share_of(f.targets.size),
+                tables: tables.told(choice.body).to_owned(),
             });
         }
         self.chosen.retain(|c| c.skip.is_none());
