@@ -2,10 +2,7 @@
 // a pixel on a limb, and how light and transmittance are laid over the picture.
 //
 // A model is one pure function in its own file of shaders/lib, `… -> AirLight`, asked with a `SkyView`; shaders/pass/sky_<model>.wgsl
-// binds it twice: `fragment` for the picture, `probe` for given rays. Rust side: engine/src/render/pass/sky/mod.rs and sky_probe.rs.
-// Group 2 of such a pass: @binding(0) opaque, (1) depth, (2) var<uniform> sky: Sky; of its probe: (2) sky, (3) given, (4) found.
-// Group 3 is the model's own. The probe too finds its air by the body's slot, not by a literal: Mesa 22.3's software driver builds uniforms at
-// fixed places into the code where branches depend on them, and crashes on these.
+// binds it, for the picture and for given rays (pass/sky.wgsl).
 
 #include "lib/air_path.wgsl"
 #include "lib/frame.wgsl"
@@ -113,8 +110,13 @@ fn sky_probe_view(asked: ProbeRay) -> SkyView {
     return SkyView(asked.ray.xyz, select(1e30, asked.ray.w, seen), !seen, 0.0);
 }
 
-// Light and transmittance laid over a stored colour; `sum` is over `rays` rays.
-fn sky_over(behind: vec3<f32>, sum: AirLight, rays: u32, body: Body, exposure: Exposure) -> vec4<f32> {
+// Light found per unit of the star's illuminance, in cd/m².
+fn in_starlight(body: Body, light: AirLight) -> AirLight {
+    return AirLight(light.radiance * body.illuminance.rgb, light.transmittance);
+}
+
+// Luminance and transmittance laid over a stored colour; `sum` is over `rays` rays.
+fn sky_over(behind: vec3<f32>, sum: AirLight, rays: u32, exposure: Exposure) -> vec4<f32> {
     let share = 1.0 / f32(rays);
-    return vec4<f32>(to_hdr(behind * sum.transmittance * share + sum.radiance * body.illuminance.rgb * (exposure.pre * share), 1.0), 1.0);
+    return vec4<f32>(to_hdr(behind * sum.transmittance * share + sum.radiance * (exposure.pre * share), 1.0), 1.0);
 }

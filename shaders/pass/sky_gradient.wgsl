@@ -1,43 +1,11 @@
 // The sky by the model `gradient`, for a picture and for given rays. Rust side: engine/src/render/pass/sky/gradient.rs.
 
-#include "lib/sky_draw.wgsl"
+#include "pass/sky.wgsl"
 #include "lib/gradient.wgsl"
 
-@group(0) @binding(0) var<uniform> frame: Frame;
-@group(0) @binding(1) var<uniform> bodies: Bodies;
-@group(0) @binding(2) var<uniform> exposure: Exposure;
-@group(1) @binding(0) var<uniform> airs: Airs;
-@group(2) @binding(0) var opaque: texture_2d<f32>;
-@group(2) @binding(1) var depth: texture_depth_2d;
-@group(2) @binding(2) var<uniform> sky: Sky;
-@group(2) @binding(3) var<storage, read> given: array<ProbeRay>;
-@group(2) @binding(4) var<storage, read_write> found: array<ProbeLight>;
 @group(3) @binding(0) var shell_map: texture_2d<f32>;
 @group(3) @binding(1) var ground_map: texture_2d<f32>;
 
-@fragment
-fn fragment(in: Varying) -> @location(0) vec4<f32> {
-    let pixel = vec2<u32>(in.position.xy);
-    let body = bodies.list[sky.ids.x];
-    let air = airs.list[u32(body.ids.z)];
-    let view = sky_view(frame, in.uv, textureLoad(depth, pixel, 0));
-    let rays = sky_rays(body, air, view);
-    var sum = AirLight(vec3<f32>(0.0), vec3<f32>(0.0));
-    for (var k = 0u; k < rays; k++) {
-        let light = gradient_light(body, air, shell_map, ground_map, sky, sky_across(body, view, k, rays));
-        sum.radiance += light.radiance;
-        sum.transmittance += light.transmittance;
-    }
-    return sky_over(textureLoad(opaque, pixel, 0).rgb, sum, rays, body, exposure);
-}
-
-@compute @workgroup_size(64)
-fn probe(@builtin(global_invocation_id) id: vec3<u32>) {
-    if id.x >= arrayLength(&given) {
-        return;
-    }
-    let asked = given[id.x];
-    let body = sky_probe_body(bodies.list[sky.ids.x], asked);
-    let light = gradient_light(body, airs.list[u32(body.ids.z)], shell_map, ground_map, sky, sky_probe_view(asked));
-    found[id.x] = ProbeLight(vec4<f32>(light.radiance, 0.0), vec4<f32>(light.transmittance, 1.0));
+fn sky_light(body: Body, star: vec4<f32>, view: SkyView) -> AirLight {
+    return in_starlight(body, gradient_light(body, airs.list[u32(body.ids.z)], shell_map, ground_map, sky, view));
 }

@@ -1,25 +1,12 @@
 // The sky by the model `physical`, for a picture and for given rays. Rust side: engine/src/render/pass/sky/physical.rs.
 //
-// `fragment` marches at every pixel. `half_rate` marches at every second pixel of every second row, into two textures of half the size;
+// `fragment` (of pass/sky.wgsl) marches at every pixel. `half_rate` marches at every second pixel of every second row, into two textures of half the size;
 // `merge` then draws the picture: a pixel between four that agree takes their mean, any other marches by itself.
 
-#include "lib/sky_draw.wgsl"
+#include "pass/sky.wgsl"
 #include "lib/physical.wgsl"
 #include "lib/second_light.wgsl"
 
-@group(0) @binding(0) var<uniform> frame: Frame;
-@group(0) @binding(1) var<uniform> bodies: Bodies;
-@group(0) @binding(2) var<uniform> exposure: Exposure;
-@group(1) @binding(0) var<uniform> airs: Airs;
-@group(1) @binding(1) var transmittance: texture_2d_array<f32>;
-@group(1) @binding(2) var orders: texture_3d<f32>;
-@group(1) @binding(4) var linear: sampler;
-@group(1) @binding(8) var media: texture_2d_array<f32>;
-@group(2) @binding(0) var opaque: texture_2d<f32>;
-@group(2) @binding(1) var depth: texture_depth_2d;
-@group(2) @binding(2) var<uniform> sky: Sky;
-@group(2) @binding(3) var<storage, read> given: array<ProbeRay>;
-@group(2) @binding(4) var<storage, read_write> found: array<ProbeLight>;
 @group(3) @binding(0) var half_radiance: texture_2d<f32>;
 @group(3) @binding(1) var half_transmittance: texture_2d<f32>;
 
@@ -34,8 +21,8 @@ const AGREE: f32 = 0.08;
 // Optical depth between a pixel's surface and the nearest or farthest of those around it.
 const AGREE_DEPTH: f32 = 0.01;
 
-// By the air's own medium, or by its two band media; luminance, cd/m², in the star's light and the second one.
-fn light_of(body: Body, star: vec4<f32>, view: SkyView) -> AirLight {
+// By the air's own medium, or by its two band media; in the star's light and the second one.
+fn sky_light(body: Body, star: vec4<f32>, view: SkyView) -> AirLight {
     let air = airs.list[u32(body.ids.z)];
     var luminance = vec3<f32>(0.0);
     var through = vec3<f32>(0.0);
@@ -54,33 +41,6 @@ fn light_of(body: Body, star: vec4<f32>, view: SkyView) -> AirLight {
     return AirLight(luminance, clamp(through, vec3<f32>(0.0), vec3<f32>(1.0)));
 }
 
-// Light and transmittance of a pixel laid over what is stored there; `sum` is over `rays` rays.
-fn laid_over(behind: vec3<f32>, sum: AirLight, rays: u32) -> vec4<f32> {
-    let share = 1.0 / f32(rays);
-    return vec4<f32>(to_hdr(behind * sum.transmittance * share + sum.radiance * (exposure.pre * share), 1.0), 1.0);
-}
-
-// Sum over the rays that stand for a pixel, and their number.
-fn march(body: Body, view: SkyView, rays: u32) -> AirLight {
-    var sum = AirLight(vec3<f32>(0.0), vec3<f32>(0.0));
-    for (var k = 0u; k < rays; k++) {
-        let light = light_of(body, frame.star, sky_across(body, view, k, rays));
-        sum.radiance += light.radiance;
-        sum.transmittance += light.transmittance;
-    }
-    return sum;
-}
-
-@fragment
-fn fragment(in: Varying) -> @location(0) vec4<f32> {
-    let pixel = vec2<u32>(in.position.xy);
-    let body = bodies.list[sky.ids.x];
-    let air = airs.list[u32(body.ids.z)];
-    let view = sky_view(frame, in.uv, textureLoad(depth, pixel, 0));
-    let rays = sky_rays(body, air, view);
-    return laid_over(textureLoad(opaque, pixel, 0).rgb, march(body, view, rays), rays);
-}
-
 @fragment
 fn half_rate(in: Varying) -> Half {
     let pixel = 2u * vec2<u32>(in.position.xy);
@@ -88,7 +48,7 @@ fn half_rate(in: Varying) -> Half {
     let air = airs.list[u32(body.ids.z)];
     let view = sky_view(frame, (vec2<f32>(pixel) + 0.5) * frame.size.zw, textureLoad(depth, pixel, 0));
     let rays = sky_rays(body, air, view);
-    let sum = march(body, view, min(rays, 1u));
+    let sum = sky_sum(body, view, min(rays, 1u));
     return Half(vec4<f32>(to_hdr(sum.radiance, exposure.pre), 1.0), vec4<f32>(sum.transmittance, select(0.0, 1.0, rays <= 1u)));
 }
 
@@ -136,20 +96,7 @@ fn merge(in: Varying) -> @location(0) vec4<f32> {
     var out = vec4<f32>(to_hdr(colour, 1.0), 1.0);
     let rays = sky_rays(body, air, view);
     for (var marches = select(1u, 0u, fine && rays <= 1u); marches > 0u; marches--) {
-        out = laid_over(behind, march(body, view, rays), rays);
+        out = sky_over(behind, sky_sum(body, view, rays), rays, exposure);
     }
     return out;
-}
-
-@compute @workgroup_size(64)
-fn probe(@builtin(global_invocation_id) id: vec3<u32>) {
-    if id.x >= arrayLength(&given) {
-        return;
-    }
-    let asked = given[id.x];
-    let body = sky_probe_body(bodies.list[sky.ids.x], asked);
-    let star = sky_probe_star(frame, body, asked);
-    // By the body's slot, not by a constant: Mesa 22's software driver faults on branches that hang on constant places of a uniform.
-    let light = light_of(body, star, sky_probe_view(asked));
-    found[id.x] = ProbeLight(vec4<f32>(light.radiance, 0.0), vec4<f32>(light.transmittance, 1.0));
 }

@@ -5,7 +5,7 @@ use engine::gpu::ShaderLibrary;
 use engine::render::pass::sky_probe::{ProbeLight, ProbeRay};
 use engine::scene::gpu_data as rust;
 use engine::scene::gpu_terrain as ground;
-use wgpu::naga::{Module, TypeInner};
+use wgpu::naga::{AddressSpace, Expression, Function, Module, ShaderStage, TypeInner, valid};
 
 /// Name, offset, size.
 type Fields = Vec<(String, usize, usize)>;
@@ -39,11 +39,18 @@ fn reflected(file: &str, name: &str) -> (Fields, usize) {
     (fields, span as usize)
 }
 
+/// What is a shader only together with the file that includes it, and there is checked.
+const PARTS: [&str; 1] = ["pass/sky.wgsl"];
+
+fn whole() -> impl Iterator<Item = &'static str> {
+    ShaderLibrary::names().filter(|name| !PARTS.contains(name))
+}
+
 #[test]
 fn every_shader_is_valid() {
     let mut errors = Vec::new();
     let mut count = 0;
-    for name in ShaderLibrary::names() {
+    for name in whole() {
         count += 1;
         if let Err(e) = library().check(name) {
             errors.push(e.to_string());
@@ -51,6 +58,50 @@ fn every_shader_is_valid() {
     }
     assert!(count > 10, "{count} shaders are embedded");
     assert!(errors.is_empty(), "{}", errors.join("\n"));
+    for part in PARTS {
+        let asked = format!("#include \"{part}\"");
+        let askers = whole().filter(|name| std::fs::read_to_string(format!("../shaders/{name}")).is_ok_and(|text| text.contains(&asked)));
+        assert!(askers.count() > 0, "nothing includes shaders/{part}");
+    }
+}
+
+/// Uniforms that the frame binds before any others: group 0.
+const EARLY: usize = 3;
+/// Later ones that compute shaders may read all the same: a list that is asked by an index, and one on which no branch hangs.
+const LATE: [&str; 2] = ["airs", "meter"];
+
+/// True where the function asks element so and so of the global array's struct by a number in its text.
+fn asks_at_a_fixed_place(function: &Function, module: &Module, name: &str) -> bool {
+    let list = |e| match &function.expressions[e] {
+        Expression::AccessIndex { base, .. } => {
+            matches!(&function.expressions[*base], Expression::GlobalVariable(v) if module.global_variables[*v].name.as_deref() == Some(name))
+        }
+        _ => false,
+    };
+    function.expressions.iter().any(|(_, e)| matches!(e, Expression::AccessIndex { base, .. } if list(*base)))
+}
+
+#[test]
+fn branches_of_compute_shaders_hang_on_early_uniforms_only() {
+    // Why: `compute_pipeline` in engine/src/render/pipeline.rs.
+    let mut count = 0;
+    for file in whole() {
+        let (_, module) = library().check(file).unwrap_or_else(|e| panic!("{e}"));
+        let info = valid::Validator::new(valid::ValidationFlags::all(), valid::Capabilities::empty()).validate(&module).expect("checked");
+        for (i, entry) in module.entry_points.iter().enumerate().filter(|(_, e)| e.stage == ShaderStage::Compute) {
+            count += 1;
+            let used = info.get_entry_point(i);
+            let uniforms = module.global_variables.iter().filter(|(v, g)| g.space == AddressSpace::Uniform && !used[*v].is_empty());
+            for (_, global) in uniforms.filter(|(_, g)| g.binding.as_ref().is_some_and(|b| b.group > 0 || b.binding as usize > EARLY)) {
+                let name = global.name.as_deref().unwrap_or_default();
+                let what = format!("`{}` of shaders/{file} reads the uniform `{name}`", entry.name);
+                assert!(LATE.contains(&name), "{what}: make it a storage buffer, or say in this test why no branch hangs on it");
+            }
+        }
+        let functions = module.functions.iter().map(|(_, f)| f).chain(module.entry_points.iter().map(|e| &e.function));
+        assert!(!functions.into_iter().any(|f| asks_at_a_fixed_place(f, &module, "airs")), "shaders/{file} asks `airs` at a fixed place");
+    }
+    assert!(count > 10, "{count} entries");
 }
 
 #[test]

@@ -94,7 +94,6 @@ fn the_table_is_the_formula() {
 }
 
 #[test]
-#[ignore = "in a process of its own, see tests/run.sh"]
 fn even_entries_are_the_formula_less_closely() {
     let even = ViewTable { spacing: Spacing::Uniform, samples: 50, ..ViewTable::default() };
     let (mean, _) = errors(&even);
@@ -102,7 +101,6 @@ fn even_entries_are_the_formula_less_closely() {
 }
 
 #[test]
-#[ignore = "in a process of its own, see tests/run.sh"]
 fn the_difference_of_two_depths_keeps_its_digits() {
     // From a hand's breadth to the horizon: [eq. 3.9] in f32 against the integral.
     let medium = medium();
@@ -141,7 +139,6 @@ fn the_difference_of_two_depths_keeps_its_digits() {
 }
 
 #[test]
-#[ignore = "in a process of its own, see tests/run.sh"]
 fn before_a_surface_there_is_its_share_of_the_air() {
     // Radiance up to a surface, by difference and by the near march, against the integral of single scattering: ray by ray in the sun's plane.
     let medium = Medium { layers: medium().layers[..1].to_vec(), ..medium() };
@@ -170,7 +167,6 @@ fn before_a_surface_there_is_its_share_of_the_air() {
 }
 
 #[test]
-#[ignore = "in a process of its own, see tests/run.sh"]
 fn nothing_is_nan_wherever_one_stands() {
     let dust = Layer {
         scattering_per_m: Vec3::splat(0.1),
@@ -208,7 +204,6 @@ fn nothing_is_nan_wherever_one_stands() {
 }
 
 #[test]
-#[ignore = "in a process of its own, see tests/run.sh"]
 fn the_ground_is_lit_by_its_own_tables() {
     // A Lambert ball seen from two metres straight down: [eq. 3.6] and [eq. 3.7] on it, and next to no air before it.
     let medium = medium();

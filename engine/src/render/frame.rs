@@ -96,7 +96,7 @@ fn light(f: &mut FrameContext<'_>, passes: &mut Passes) -> Result<wgpu::TextureV
     // No pass of its own: where a world shines on another, what that other shows is lit twice.
     f.runs("second_light", second_light::skip(f.scene));
 
-    let skip = passes.sky.plan(f);
+    let skip = passes.sky.plan(f, &passes.air_tables);
     if f.runs("sky_tables", skip) {
         passes.sky.record_tables(f);
     }

@@ -14,6 +14,20 @@ pub const fn uniform_entry(binding: u32) -> wgpu::BindGroupLayoutEntry {
     }
 }
 
+/// An entry for a storage buffer that fragments and compute shaders read.
+pub const fn storage_entry(binding: u32) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: ShaderStages::FRAGMENT.union(ShaderStages::COMPUTE),
+        ty: wgpu::BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Storage { read_only: true },
+            has_dynamic_offset: false,
+            min_binding_size: None,
+        },
+        count: None,
+    }
+}
+
 /// A filterable float texture entry.
 pub const fn texture_entry(binding: u32, dimension: wgpu::TextureViewDimension) -> wgpu::BindGroupLayoutEntry {
     wgpu::BindGroupLayoutEntry {
@@ -167,6 +181,10 @@ impl<'a> PipelineKind<'a> {
 }
 
 /// A compute pipeline with entry point `entry`.
+///
+/// Of the uniforms in its layouts only the first three may be asked at fixed places by a condition of a branch or a loop: Mesa 22.3's
+/// software driver notes such places in a table that it indexes with the wrong stride (`lvp_inline_uniforms.c`: 32 in place of 4 to a uniform), for later ones
+/// beyond the end of the pipeline's memory. What hangs on more is in storage buffers, or found by an index. Held by `tests/tests/shaders.rs`.
 pub fn compute_pipeline(
     gpu: &Gpu,
     label: &str,

@@ -28,6 +28,9 @@ pub struct AirReport {
     pub reason: String,
     /// Share of the picture that it was drawn over, 0 … 1.
     pub covers: f32,
+    /// What became of its tables, in words.
+    #[serde(default)]
+    pub tables: String,
 }
 
 /// What became of a frame.

@@ -1,4 +1,5 @@
-//! Air tables: transmittance, further orders of scattering and sky irradiance of each air, baked only when a medium is new or has changed.
+//! Air tables: transmittance, further orders of scattering and sky irradiance of each air that is drawn or lights what is drawn, baked only
+//! when it comes into view for the first time or its medium has changed. Those of an air that goes out of view stay while there is room.
 //!
 //! An air that is drawn in bands ([`crate::air::spectral`]) takes three slots: its own, whose tables everyone asks, and one for each
 //! band medium, by which its light along a ray is found.
@@ -8,9 +9,10 @@
 
 use super::air_bands::{BandMixer, Tables};
 use super::air_orders::{Inputs, OrdersBaker};
+use super::sky::choose::without_tables;
 use crate::air::model::orders::Plan;
 use crate::air::model::spread::Spread;
-use crate::air::{Air, Classes, Medium};
+use crate::air::{Air, Classes, Medium, Model};
 use crate::gpu::buffer::Uniform;
 use crate::gpu::texture::{Texture, linear_sampler};
 use crate::gpu::{Gpu, ShaderLibrary};
@@ -18,8 +20,8 @@ use crate::render::RenderError;
 use crate::render::pipeline::{compute_pipeline, loaded_entry, uniform_entry};
 use crate::render::shared::{AirTables, FrameContext};
 use crate::render::targets::HDR;
-use crate::scene::Snapshot;
 use crate::scene::gpu_data::{AirUniform, AirsUniform, MAX_AIRS, MEDIA_COLUMNS, MEDIA_ROWS, media_rows};
+use crate::scene::{Body, Snapshot, Surface};
 use bytemuck::Zeroable;
 use glam::DMat3;
 use wgpu::{BindingResource, TextureUsages, TextureViewDimension};
@@ -34,6 +36,8 @@ enum Part {
     Own,
     /// A medium of its bands.
     Band(usize),
+    /// Only its shape: nothing asks for tables.
+    Bare,
 }
 
 /// How an air is mixed of its bands.
@@ -68,6 +72,8 @@ pub struct AirBaker {
     linear: wgpu::Sampler,
     slots: Vec<Slot>,
     clock: u64,
+    /// What becomes of the tables of each body of the scene, in words.
+    told: Vec<String>,
 }
 
 impl AirBaker {
@@ -113,13 +119,53 @@ impl AirBaker {
             media: media.array_view(),
         };
         let linear = linear_sampler(&gpu.device, "air tables", false);
-        Ok(Self { layout, pipeline, orders, mixer, transmittance, irradiance, media, values, airs, linear, slots: Vec::new(), clock: 0 })
+        Ok(Self {
+            layout,
+            pipeline,
+            orders,
+            mixer,
+            transmittance,
+            irradiance,
+            media,
+            values,
+            airs,
+            linear,
+            slots: Vec::new(),
+            clock: 0,
+            told: Vec::new(),
+        })
     }
 
-    /// The slot of each body of the scene that has air; new and changed media wait for [`AirBaker::record`].
+    /// The slot of each body of the scene whose air needs tables; new and changed media wait for [`AirBaker::record`].
+    ///
+    /// In a forced frame all airs get theirs.
     pub fn assign(&mut self, scene: &Snapshot) -> Vec<Option<u32>> {
         self.clock += 1;
-        scene.bodies.iter().map(|body| body.air.as_ref().and_then(|air| self.slots_of(body.id, air))).collect()
+        self.told.clear();
+        let mut slots = Vec::new();
+        for (i, body) in scene.bodies.iter().enumerate() {
+            let why = without_tables(scene, i).filter(|_| !scene.force.all);
+            let air = body.air.as_ref().filter(|_| why.is_none());
+            let slot = air.and_then(|air| match is_bare(body, air) {
+                true => self.slot_of(body.id, Part::Bare, &air.medium),
+                false => self.slots_of(body.id, air),
+            });
+            let held = slot.and_then(|s| self.slots.get(s as usize));
+            self.told.push(match (why, held) {
+                (Some(why), _) => format!("none: {why}"),
+                (None, Some(slot)) if slot.part == Part::Bare => "none: its model asks none".to_owned(),
+                (None, Some(slot)) if slot.baked => "as they were made".to_owned(),
+                (None, Some(_)) => "made: new or changed".to_owned(),
+                (None, None) => "none".to_owned(),
+            });
+            slots.push(slot);
+        }
+        slots
+    }
+
+    /// What [`AirBaker::assign`] found of the tables of a body, in words.
+    pub fn told(&self, body: u32) -> &str {
+        self.told.get(body as usize).map_or("", String::as_str)
     }
 
     /// The slot of an air, and those of its bands; where there is no room for these it is drawn without.
@@ -176,7 +222,10 @@ impl AirBaker {
         if scene.bodies.iter().all(|b| b.air.is_none()) {
             return Some("no body in the scene has air".to_owned());
         }
-        self.slots.iter().all(|s| s.baked).then(|| "no medium has changed since its tables were made".to_owned())
+        if self.slots.iter().all(|s| s.used < self.clock) {
+            return Some("no air in view covers a pixel, and none lights a ship".to_owned());
+        }
+        self.slots.iter().all(|s| s.baked).then(|| "no medium in view has changed since its tables were made".to_owned())
     }
 
     /// Bakes what waits (everything, where the frame is forced) and gives the tables.
@@ -227,7 +276,7 @@ impl AirBaker {
     }
 
     fn bake_slot(&self, gpu: &Gpu, pass: &mut wgpu::ComputePass<'_>, slot: u32) {
-        let Some(held) = self.slots.get(slot as usize) else { return };
+        let Some(held) = self.slots.get(slot as usize).filter(|s| s.part != Part::Bare) else { return };
         let layer = |table, dimension| layer_of(table, slot, dimension);
         let air = self.air_in(slot);
         let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
@@ -295,6 +344,11 @@ impl AirBaker {
     pub const fn textures(&self) -> [&Texture; 2] {
         [&self.transmittance, &self.irradiance]
     }
+}
+
+/// Whether an air lights no ground, by a model that knows no tables: a bank of fog.
+const fn is_bare(body: &Body, air: &Air) -> bool {
+    matches!(body.surface, Surface::Nothing) && matches!(air.model, Model::Thickness(_) | Model::Gradient(_) | Model::LimbTable(_))
 }
 
 /// One layer of a table.

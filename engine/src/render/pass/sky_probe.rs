@@ -6,7 +6,7 @@ use super::sky::{Painter, Parts, STEPS, painter, picture_layout};
 use crate::air::Air;
 use crate::gpu::{Gpu, ShaderLibrary, readback};
 use crate::render::RenderError;
-use crate::render::pipeline::{compute_pipeline, uniform_entry};
+use crate::render::pipeline::{compute_pipeline, storage_entry};
 use crate::render::shared::{Mirror, ShadowMap, Shared};
 use crate::scene::gpu_data::{BodiesUniform, BodyUniform, FrameUniform, Layers, MAX_OCCLUDERS, SKY_SINGLE, SkyUniform, vec4};
 use crate::scene::{Body, Occluder, SecondLight, Surface};
@@ -94,11 +94,11 @@ impl Prober {
         gpu.submit(encoder);
 
         let light = shared.light_group(gpu, &tables, &tables.media, &Mirror::none(gpu), &ShadowMap::none(gpu));
-        let storage = |binding, read_only| wgpu::BindGroupLayoutEntry {
-            binding,
+        let found_entry = wgpu::BindGroupLayoutEntry {
+            binding: 4,
             visibility: wgpu::ShaderStages::COMPUTE,
             ty: wgpu::BindingType::Buffer {
-                ty: wgpu::BufferBindingType::Storage { read_only },
+                ty: wgpu::BufferBindingType::Storage { read_only: false },
                 has_dynamic_offset: false,
                 min_binding_size: None,
             },
@@ -106,7 +106,7 @@ impl Prober {
         };
         let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("group 2: rays"),
-            entries: &[uniform_entry(2), storage(3, true), storage(4, false)],
+            entries: &[storage_entry(2), storage_entry(3), found_entry],
         });
         let kind = painter.kind();
         let module = shaders.load(&gpu.device, kind.file)?;
@@ -134,7 +134,7 @@ impl Prober {
         };
         let flags = if options.multiple { 0 } else { SKY_SINGLE };
         let sky = SkyUniform { ids: [0, options.steps, flags, 0], settings: self.painter.settings(&body, &self.air) };
-        let sky = buffer(bytemuck::bytes_of(&sky), BufferUsages::UNIFORM);
+        let sky = buffer(bytemuck::bytes_of(&sky), BufferUsages::STORAGE);
         let given = buffer(bytemuck::cast_slice(rays), BufferUsages::STORAGE);
         let empty = vec![ProbeLight::zeroed(); rays.len()];
         let found = buffer(bytemuck::cast_slice(&empty), BufferUsages::STORAGE | BufferUsages::COPY_SRC);

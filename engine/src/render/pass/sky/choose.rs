@@ -1,9 +1,9 @@
-//! Which airs are drawn, over which part of the picture, and why the others are not. No GPU here.
+//! Which airs are drawn, over which part of the picture, which need tables, and why the others do not. No GPU here.
 
 use super::model_name;
 use crate::air::Air;
 use crate::render::pass::smooth_body::radius_px;
-use crate::scene::gpu_data::MAX_BODIES;
+use crate::scene::gpu_data::{MAX_AIRS, MAX_BODIES};
 use crate::scene::{Body, Snapshot, Surface};
 use crate::space::relative::narrow;
 use glam::Vec3;
@@ -12,6 +12,8 @@ use glam::Vec3;
 pub const AIR_BELOW_PX: f32 = 0.5;
 /// A rectangle that covers more of the picture than this is drawn as the whole of it: that saves a copy.
 const NEARLY_WHOLE: f32 = 0.8;
+/// Why an air beside or behind the picture is not drawn.
+const OUT_OF_VIEW: &str = "out of view";
 
 /// A part of the picture, pixels from the upper left.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -27,7 +29,7 @@ pub struct Rect {
 }
 
 /// A body with air, and what becomes of it.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Choice {
     /// Its place in the list of bodies.
     pub body: u32,
@@ -84,43 +86,98 @@ impl Rect {
 
 /// Every body with air, far to near, with what becomes of it. `slots` are those of the air tables, by body.
 pub fn choose(scene: &Snapshot, slots: &[Option<u32>]) -> Vec<Choice> {
-    let mut all: Vec<Choice> = (0u32..)
-        .zip(scene.bodies.iter().take(MAX_BODIES))
-        .filter_map(|(i, body)| body.air.as_ref().map(|air| choice(scene, i, body, air, slots.get(i as usize).copied().flatten())))
-        .collect();
-    all.reverse();
-    all
+    let one = |i: usize| {
+        let body = scene.bodies.get(i)?;
+        Some(choice(scene, i, body, body.air.as_ref()?, slots.get(i).copied().flatten()))
+    };
+    far_to_near(scene).into_iter().filter_map(one).collect()
 }
 
-fn choice(scene: &Snapshot, index: u32, body: &Body, air: &Air, slot: Option<u32>) -> Choice {
-    let size = scene.camera.size_px;
-    let mut out =
-        Choice { body: index, id: body.id, model: model_name(&air.model), rect: Rect::default(), reason: String::new(), skip: None };
-    // Of a shell that is all there is, its own disc counts.
-    let shell = if matches!(body.surface, Surface::Nothing) { narrow(air.medium.top_altitude_m) / body.radius_m + 1.0 } else { 1.0 };
-    let px = radius_px(scene, body) * shell;
-    if slot.is_none() {
-        out.skip = Some("more airs than slots for their tables, and this one is the farthest".to_owned());
-    } else if px < AIR_BELOW_PX {
-        out.skip = Some(format!("its disc has a radius of {px:.2} pixels: under {AIR_BELOW_PX}"));
-    } else {
-        match covered(scene, body, narrow(air.medium.top_altitude_m)) {
-            Some(rect) if rect.share_of(size) > NEARLY_WHOLE => {
-                out.rect = Rect::whole(size);
-                out.reason = "it covers the picture".to_owned();
-            }
-            Some(rect) if !rect.is_empty() => {
-                out.rect = rect;
-                out.reason = format!("it covers {} × {} pixels", rect.width, rect.height);
-            }
-            Some(_) => out.skip = Some("out of view".to_owned()),
-            None => {
-                out.rect = Rect::whole(size);
-                out.reason = "the camera is in it, or near".to_owned();
+/// Bodies with air in the order in which their shells are laid over the picture.
+///
+/// Two shells apart from each other lie on either side of the plane of equal powers, d² − R²: whatever the ray, the one of less power to the
+/// camera comes first on it. Shells within another, as banks of fog are, follow the one that holds them.
+fn far_to_near(scene: &Snapshot) -> Vec<usize> {
+    let shell = |(index, body): (usize, &Body)| {
+        let top_m = narrow(body.air.as_ref()?.medium.top_altitude_m);
+        let power = (body.camera_altitude_m - top_m) * (2.0 * body.radius_m + body.camera_altitude_m + top_m);
+        Some(Shell { index, centre_m: body.centre_m, radius_m: body.radius_m + top_m, power })
+    };
+    let mut shells: Vec<Shell> = scene.bodies.iter().enumerate().filter_map(shell).collect();
+    shells.sort_by(|a, b| b.power.total_cmp(&a.power));
+    let mut order = Vec::new();
+    Shell::lay(&shells, None, &mut order);
+    order
+}
+
+struct Shell {
+    index: usize,
+    centre_m: Vec3,
+    radius_m: f32,
+    power: f32,
+}
+
+impl Shell {
+    fn holds(&self, other: &Self) -> bool {
+        self.radius_m > other.radius_m && self.centre_m.distance(other.centre_m) < self.radius_m
+    }
+
+    /// Those that are held by `by` and by nothing smaller, each followed by what it holds.
+    fn lay(all: &[Self], by: Option<usize>, into: &mut Vec<usize>) {
+        for shell in all {
+            let holders = all.iter().filter(|other| other.holds(shell));
+            if holders.min_by(|a, b| a.radius_m.total_cmp(&b.radius_m)).map(|other| other.index) == by {
+                into.push(shell.index);
+                Self::lay(all, Some(shell.index), into);
             }
         }
     }
-    out
+}
+
+/// Why the air of a body needs no tables: it is not drawn, and nothing drawn is lit through it.
+pub fn without_tables(scene: &Snapshot, index: usize) -> Option<String> {
+    let body = scene.bodies.get(index)?;
+    let air = body.air.as_ref()?;
+    if scene.ships.iter().any(|ship| ship.host == Some(index) && !ship.hidden) {
+        return None;
+    }
+    extent(scene, index, body, air).err()
+}
+
+#[allow(clippy::cast_possible_truncation)]
+fn choice(scene: &Snapshot, index: usize, body: &Body, air: &Air, slot: Option<u32>) -> Choice {
+    let chosen = Choice { body: index as u32, id: body.id, model: model_name(&air.model), ..Choice::default() };
+    match extent(scene, index, body, air) {
+        Ok(_) if slot.is_none() => {
+            let skip = format!("more airs in view than the {MAX_AIRS} that fit, and this one is among the farthest");
+            Choice { skip: Some(skip), ..chosen }
+        }
+        Ok((rect, reason)) => Choice { rect, reason, ..chosen },
+        Err(why) if scene.force.all && slot.is_some() && why == OUT_OF_VIEW => {
+            Choice { rect: Rect::whole(scene.camera.size_px), reason: format!("forced; else skipped: {why}"), ..chosen }
+        }
+        Err(why) => Choice { skip: Some(why), ..chosen },
+    }
+}
+
+/// What an air is drawn over and why, or why it is not drawn.
+fn extent(scene: &Snapshot, index: usize, body: &Body, air: &Air) -> Result<(Rect, String), String> {
+    let size = scene.camera.size_px;
+    if index >= MAX_BODIES {
+        return Err(format!("more bodies than the {MAX_BODIES} that a picture holds, and this one is among the farthest"));
+    }
+    // Of a shell that is all there is, its own disc counts.
+    let shell = if matches!(body.surface, Surface::Nothing) { narrow(air.medium.top_altitude_m) / body.radius_m + 1.0 } else { 1.0 };
+    let px = radius_px(scene, body) * shell;
+    if px < AIR_BELOW_PX {
+        return Err(format!("its disc has a radius of {px:.2} pixels: under {AIR_BELOW_PX}"));
+    }
+    match covered(scene, body, narrow(air.medium.top_altitude_m)) {
+        Some(rect) if rect.share_of(size) > NEARLY_WHOLE => Ok((Rect::whole(size), "it covers the picture".to_owned())),
+        Some(rect) if !rect.is_empty() => Ok((rect, format!("it covers {} × {} pixels", rect.width, rect.height))),
+        Some(_) => Err(OUT_OF_VIEW.to_owned()),
+        None => Ok((Rect::whole(size), "the camera is in it, or near".to_owned())),
+    }
 }
 
 /// The rectangle around a body's air; `None` where the shell reaches the camera's plane.
@@ -156,6 +213,80 @@ fn tangents(across: f32, along: f32, radius: f32) -> [f32; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::air::Medium;
+    use crate::render::tests::empty_scene;
+    use glam::Quat;
+
+    /// A ball of air about a core of `radius_m`.
+    fn body(id: u16, centre_m: Vec3, radius_m: f32, top_m: f32) -> Body {
+        let medium = Medium {
+            bottom_radius_m: f64::from(radius_m),
+            top_altitude_m: f64::from(top_m),
+            ground_albedo: Vec3::ZERO,
+            layers: Vec::new(),
+        };
+        Body {
+            id,
+            centre_m,
+            radius_m,
+            icrf_from_fixed: Quat::IDENTITY,
+            camera_altitude_m: centre_m.length() - radius_m,
+            camera_up: -centre_m.normalize_or(Vec3::NEG_Z),
+            sun_direction: Vec3::Z,
+            sun_angular_radius_rad: 0.005,
+            sun_illuminance_lx: Vec3::ONE,
+            occluders: Vec::new(),
+            albedo: Vec3::ZERO,
+            surface: Surface::Smooth,
+            air: Some(medium.into()),
+        }
+    }
+
+    fn ids(bodies: Vec<Body>) -> Vec<u16> {
+        let scene = Snapshot { bodies, ..empty_scene([64, 64]) };
+        choose(&scene, &[]).iter().map(|c| c.id).collect()
+    }
+
+    #[test]
+    fn shells_are_laid_far_to_near_whichever_centre_is_nearer() {
+        // A giant and a moon beside its limb, seen through the edge of the giant's air: the moon's centre is nearer, the moon lies behind.
+        let giant = body(1, Vec3::NEG_Z * 2.0e8, 7.0e7, 1.0e6);
+        let behind = body(2, Vec3::new(7.3e7, 0.0, -1.85e8), 1.0e6, 1.0e5);
+        assert!(behind.centre_m.length() < giant.centre_m.length());
+        let before = body(3, Vec3::NEG_Z * 1.0e8, 1.0e6, 1.0e5);
+        assert_eq!(ids(vec![before.clone(), giant.clone(), behind.clone()]), [2, 1, 3]);
+        assert_eq!(ids(vec![behind, before, giant]), [2, 1, 3]);
+    }
+
+    #[test]
+    fn what_a_shell_holds_follows_it() {
+        let planet = |alt: f32| body(1, Vec3::NEG_Y * (6.4e6 + alt), 6.4e6, 1.0e5);
+        let bank = |at: Vec3| body(2, at, 1.0e-3, 500.0);
+        let moon = body(3, Vec3::NEG_Z * 3.8e8, 1.7e6, 1.0e4);
+        // On the ground with a bank far off; from space down on it; within the bank.
+        assert_eq!(ids(vec![bank(Vec3::NEG_Z * 4.0e3), planet(2.0), moon.clone()]), [3, 1, 2]);
+        assert_eq!(ids(vec![planet(4.0e5), bank(Vec3::NEG_Y * 3.99e5), moon.clone()]), [3, 1, 2]);
+        assert_eq!(ids(vec![bank(Vec3::NEG_Z * 100.0), planet(2.0), moon]), [3, 1, 2]);
+    }
+
+    #[test]
+    fn tables_are_for_airs_that_are_seen_or_light_a_ship() {
+        let mut scene = empty_scene([64, 64]);
+        scene.bodies = vec![
+            body(1, Vec3::NEG_Z * 2.0e7, 6.4e6, 1.0e5),
+            body(2, Vec3::Z * 2.0e7, 6.4e6, 1.0e5),
+            body(3, Vec3::NEG_Z * 1.0e10, 6.4e6, 1.0e5),
+        ];
+        let why = |scene: &Snapshot, i| without_tables(scene, i);
+        assert_eq!(why(&scene, 0), None);
+        assert_eq!(why(&scene, 1).as_deref(), Some(OUT_OF_VIEW));
+        assert!(why(&scene, 2).is_some_and(|w| w.contains("under 0.5")));
+        let ship = crate::render::tests::ship_at(Vec3::NEG_Z * 20.0, 1e6);
+        scene.ships = vec![crate::scene::Ship { host: Some(1), ..ship }];
+        assert_eq!(why(&scene, 1), None);
+        scene.ships[0].hidden = true;
+        assert_eq!(why(&scene, 1).as_deref(), Some(OUT_OF_VIEW));
+    }
 
     #[test]
     fn tangent_planes_touch_the_sphere() {

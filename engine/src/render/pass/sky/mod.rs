@@ -20,7 +20,8 @@ use crate::gpu::buffer::Uniform;
 use crate::gpu::texture::Texture;
 use crate::gpu::{Gpu, ShaderLibrary};
 use crate::render::RenderError;
-use crate::render::pipeline::{PipelineKind, depth_entry, texture_entry, uniform_entry};
+use crate::render::pass::air_tables::AirBaker;
+use crate::render::pipeline::{PipelineKind, depth_entry, storage_entry, texture_entry};
 use crate::render::report::AirReport;
 use crate::render::shared::{FrameContext, Mirror, Shared};
 use crate::render::targets::HDR;
@@ -166,7 +167,7 @@ pub fn painter(parts: &Parts<'_>, model: &Model) -> Result<Box<dyn Painter>, Ren
 pub fn picture_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
     gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some("group 2: picture"),
-        entries: &[texture_entry(0, wgpu::TextureViewDimension::D2), depth_entry(1), uniform_entry(2)],
+        entries: &[texture_entry(0, wgpu::TextureViewDimension::D2), depth_entry(1), storage_entry(2)],
     })
 }
 
@@ -189,12 +190,12 @@ impl Sky {
         let picture = picture_layout(gpu);
         let parts = Parts { gpu, shaders, shared, picture: &picture };
         let painters = PAINTERS.iter().map(|make| make(&parts)).collect::<Result<Vec<_>, _>>()?;
-        let uniforms = (0..MAX_AIRS).map(|_| Uniform::new(&gpu.device, "Sky", wgpu::BufferUsages::empty())).collect();
+        let uniforms = (0..MAX_AIRS).map(|_| Uniform::new(&gpu.device, "Sky", wgpu::BufferUsages::STORAGE)).collect();
         Ok(Self { steps: STEPS, picture, painters, uniforms, chosen: Vec::new(), no_mirror: Mirror::none(gpu), in_aerial: false })
     }
 
     /// Chooses what to draw and why the rest is not; then tells why no model has tables of its own to make.
-    pub fn plan(&mut self, f: &mut FrameContext<'_>) -> Option<String> {
+    pub fn plan(&mut self, f: &mut FrameContext<'_>, tables: &AirBaker) -> Option<String> {
         self.in_aerial = false;
         self.chosen = choose::choose(f.scene, &f.air_slots);
         for choice in &self.chosen {
@@ -204,6 +205,7 @@ impl Sky {
                 ran: choice.skip.is_none(),
                 reason: choice.skip.clone().unwrap_or_else(|| choice.reason.clone()),
                 covers: choice.rect.share_of(f.targets.size),
+                tables: tables.told(choice.body).to_owned(),
             });
         }
         self.chosen.retain(|c| c.skip.is_none());

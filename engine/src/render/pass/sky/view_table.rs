@@ -12,7 +12,7 @@ use crate::gpu::Gpu;
 use crate::gpu::buffer::Uniform;
 use crate::gpu::texture::{Texture, linear_sampler};
 use crate::render::RenderError;
-use crate::render::pipeline::{compute_pipeline, loaded_entry, sampler_entry, texture_entry, uniform_entry};
+use crate::render::pipeline::{compute_pipeline, loaded_entry, sampler_entry, storage_entry, texture_entry, uniform_entry};
 use crate::render::shared::Mirror;
 use crate::render::targets::HDR;
 use crate::scene::Body;
@@ -66,7 +66,7 @@ impl Bake {
 /// Compiles it.
 pub fn make(parts: &Parts<'_>) -> Result<Box<dyn Painter>, RenderError> {
     let (flat, array, solid) = (TextureViewDimension::D2, TextureViewDimension::D2Array, TextureViewDimension::D3);
-    let own = [uniform_entry(0), texture_entry(1, solid), loaded_entry(2, flat)];
+    let own = [storage_entry(0), texture_entry(1, solid), loaded_entry(2, flat)];
     let kind = PainterKind::new(parts, "pass/sky_view_table.wgsl", &own)?;
     let filtering = wgpu::SamplerBindingType::Filtering;
     let depth = [storage(2, TextureFormat::Rgba32Float, flat), loaded_entry(4, array)];
@@ -145,7 +145,7 @@ impl Tables {
         if !classes.direct {
             media.write(&gpu.queue, 0, 0, bytemuck::cast_slice(&media_rows(medium, &classes)));
         }
-        let uniform = Uniform::new(d, "ViewTable", wgpu::BufferUsages::empty());
+        let uniform = Uniform::new(d, "ViewTable", wgpu::BufferUsages::STORAGE);
         uniform.write(&gpu.queue, &ViewTableUniform::new(id, settings, &Split::new(medium)));
         let group = d.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("group 3: view_table"),
