@@ -123,7 +123,9 @@ fn the_table_keeps_the_sum() {
     for distance_m in [6.9e6, 4.2e7, 3.63e8, 3.844e8, 1.2e9] {
         let behind = Behind { star_distance_m: AU, star_radius_m: SUN_M, distance_m };
         let earth = libm::asin(limb.radius_m / distance_m);
+        let start = std::time::Instant::now();
         let made: std::collections::BTreeMap<usize, _> = shade.rows(distance_m, distance_m).map(|r| (r, shade.row(r))).collect();
+        println!("{:.1} ms a row", start.elapsed().as_secs_f64() * 1e3 / made.len() as f64);
         let (mut worst, mut at) = (0.0_f64, 0.0);
         for k in 0..200 {
             let gap = (earth.min(1.5 * DEG) + 0.4 * DEG) * f64::from(k) / 199.0 - earth.min(1.5 * DEG);
@@ -136,8 +138,8 @@ fn the_table_keeps_the_sum() {
             }
         }
         println!("{distance_m:.3e} m: worst {worst:.4} at {:.3}° from the limb", at / DEG);
-        // The worst lies where a ship in low orbit still has 1e-6 of the light.
-        assert!(worst < if distance_m < 1e7 { 0.07 } else { 0.025 }, "{distance_m}: {worst}");
+        // At the ends the worst lies where a ship in low orbit still has 1e-6 of the light, and near the tip of the umbra.
+        assert!(worst < if (1e7..1e9).contains(&distance_m) { 0.02 } else { 0.07 }, "{distance_m}: {worst}");
     }
 }
 

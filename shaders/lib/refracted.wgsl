@@ -7,8 +7,8 @@
 
 const REFRACTED_COLUMNS: u32 = 193u;
 const REFRACTED_HALF: f32 = 96.0;
-const REFRACTED_ROWS: u32 = 160u;
-const REFRACTED_PER_OCTAVE: f32 = 10.0;
+const REFRACTED_ROWS: u32 = 288u;
+const REFRACTED_PER_OCTAVE: f32 = 20.0;
 
 // Light over that of the free disc. `limb` is limb_of_sphere's, of a planet of this radius at this distance.
 fn refracted_light(table: texture_2d_array<f32>, layer: i32, radius: f32, distance: f32, limb: vec3<f32>) -> vec3<f32> {

@@ -3,7 +3,7 @@
 //!
 //! Rows lie evenly in the logarithm of the distance to the limb. Their columns go from the deepest shadow that any light reaches to where the
 //! whole disc stands above the air: the first half through the umbra, closer in the dark, by the square; the other half evenly across its edge and
-//! the penumbra. A row is made when a receiver needs it: a moon needs two or three.
+//! the penumbra. A row is made when a receiver needs it: a moon needs three or four.
 
 use super::{Behind, Limb, Ring, sum};
 use crate::space::relative::narrow;
@@ -14,9 +14,9 @@ pub const COLUMNS: usize = 2 * HALF + 1;
 /// Columns of each half.
 const HALF: usize = 96;
 /// Rows.
-pub const ROWS: usize = 160;
+pub const ROWS: usize = 288;
 /// Rows for each doubling of the distance.
-const PER_OCTAVE: f64 = 10.0;
+const PER_OCTAVE: f64 = 20.0;
 /// Steps of the star's distance for each doubling: what is kept is good for 0.1 % of it.
 const STAR_PER_OCTAVE: f64 = 512.0;
 

@@ -18,7 +18,7 @@ use std::ops::RangeInclusive;
 use wgpu::TextureUsages;
 
 /// Planets whose shadows are kept.
-const KEPT: usize = 8;
+const KEPT: usize = 6;
 
 /// The shadow of one planet.
 struct Layer {
