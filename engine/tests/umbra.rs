@@ -153,6 +153,17 @@ fn the_umbra_of_the_earth_is_red_with_a_blue_rim() {
         let density = -libm::log10(l.dot(LUMINANCE));
         println!("{share}: {:?}, density {density:.2}", shown(l));
     }
+    // The edge that one sees, where brightness changes fastest for its size, stands outside of the geometric one: craters enter the umbra as if
+    // the Earth were larger by 1/85 [Danjon 1951] … 1/50 [Chauvenet] of the Moon's parallax, 57′.
+    let brightness = |x: f64| libm::log(at(x).dot(LUMINANCE));
+    let steps: Vec<f64> = (0..400).map(|i| 0.9 + 5e-4 * f64::from(i)).collect();
+    let edge = steps.into_iter().max_by(|a, b| {
+        let slope = |x: f64| brightness(x + 5e-4) - brightness(x - 5e-4);
+        slope(*a).total_cmp(&slope(*b))
+    });
+    let wider_rad = (edge.unwrap_or(0.0) - 1.0) * umbra;
+    println!("the edge stands {:.2}′ outside: 1/{:.0} of the parallax", wider_rad / DEG * 60.0, 57.0 / (wider_rad / DEG * 60.0));
+    assert!((0.4..1.4).contains(&(wider_rad / DEG * 60.0)), "{edge:?}");
     assert!(at(0.0).x > 5.0 * at(0.0).y && at(0.0).y > at(0.0).z);
     assert!(at(0.0).y < at(0.5).y && at(0.5).y < at(0.95).y);
 }
