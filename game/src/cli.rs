@@ -193,6 +193,9 @@ pub struct ShotArgs {
     /// `at:BODY,LAT,LON,HEIGHT_M,HEADING,PITCH[,FOV]` (degrees; the heading may be `sun`, `sun+30`)
     #[arg(long, value_name = "CAMERA", default_value = "chase")]
     pub camera: String,
+    /// Stops by which the picture is exposed brighter than the meter would
+    #[arg(long, value_name = "STOPS", default_value_t = 0.0, allow_hyphen_values = true)]
+    pub compensation: f32,
     /// Size of the picture, pixels
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub size: (u32, u32),

@@ -5,27 +5,30 @@
 
 #include "lib/sunlight.wgsl"
 
-const REFRACTED_COLUMNS: u32 = 127u;
-const REFRACTED_ROWS: u32 = 160u;
-const REFRACTED_PER_OCTAVE: f32 = 10.0;
+const REFRACTED_COLUMNS: u32 = 193u;
+const REFRACTED_HALF: f32 = 96.0;
+const REFRACTED_ROWS: u32 = 288u;
+const REFRACTED_PER_OCTAVE: f32 = 20.0;
 
 // Light over that of the free disc. `limb` is limb_of_sphere's, of a planet of this radius at this distance.
 fn refracted_light(table: texture_2d_array<f32>, layer: i32, radius: f32, distance: f32, limb: vec3<f32>) -> vec3<f32> {
-    let nearest = textureLoad(table, vec2<u32>(REFRACTED_COLUMNS, 0u), layer, 0).z;
+    let nearest = textureLoad(table, vec2<u32>(REFRACTED_COLUMNS, 0u), layer, 0).w;
     let to_limb = sqrt(max(distance - radius, 0.0) * (distance + radius));
     let v = min(log2(max(to_limb / max(nearest, 1.0), 1.0)) * REFRACTED_PER_OCTAVE, f32(REFRACTED_ROWS) - 1.001);
     let row = u32(v);
     let part = v - f32(row);
-    let span = mix(
-        textureLoad(table, vec2<u32>(REFRACTED_COLUMNS, row), layer, 0).xy,
-        textureLoad(table, vec2<u32>(REFRACTED_COLUMNS, row + 1u), layer, 0).xy, part);
-    let x = sqrt(clamp((limb.y + span.x) / max(span.x + span.y, 1e-9), 0.0, 1.0)) * f32(REFRACTED_COLUMNS - 1u);
-    let column = min(u32(x), REFRACTED_COLUMNS - 2u);
-    let t = x - f32(column);
-    let a = mix(textureLoad(table, vec2<u32>(column, row), layer, 0).rgb, textureLoad(table, vec2<u32>(column + 1u, row), layer, 0).rgb, t);
-    let b = mix(textureLoad(table, vec2<u32>(column, row + 1u), layer, 0).rgb, textureLoad(table, vec2<u32>(column + 1u, row + 1u), layer, 0).rgb, t);
-    let root = mix(a, b, part);
+    let root = mix(refracted_root(table, layer, row, limb.y), refracted_root(table, layer, row + 1u, limb.y), part);
     return root * root * root * root;
+}
+
+// Fourth root of the light in a row, where the star's centre stands `gap` outside of the limb.
+fn refracted_root(table: texture_2d_array<f32>, layer: i32, row: u32, gap: f32) -> vec3<f32> {
+    let span = textureLoad(table, vec2<u32>(REFRACTED_COLUMNS, row), layer, 0);
+    let inner = sqrt(clamp((gap - span.x) / max(span.y - span.x, 1e-9), 0.0, 1.0));
+    let x = (inner + clamp((gap - span.y) / max(span.z - span.y, 1e-9), 0.0, 1.0)) * REFRACTED_HALF;
+    let column = min(u32(x), REFRACTED_COLUMNS - 2u);
+    let low = textureLoad(table, vec2<u32>(column, row), layer, 0).rgb;
+    return mix(low, textureLoad(table, vec2<u32>(column + 1u, row), layer, 0).rgb, x - f32(column));
 }
 
 // Light of the star at a point, over that of the free disc: past worlds without air as eclipse_visible, past others through their air.

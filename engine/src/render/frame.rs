@@ -89,9 +89,7 @@ fn light(f: &mut FrameContext<'_>, passes: &mut Passes) -> Result<wgpu::TextureV
     let air = if f.runs("air_tables", skip) { passes.air_tables.record(f) } else { passes.air_tables.values() };
 
     let skip = passes.refracted.skip();
-    if f.runs("refracted", skip) {
-        passes.refracted.record(f);
-    }
+    let refracted = if f.runs("refracted", skip) { passes.refracted.record(f) } else { passes.refracted.table() };
 
     // No pass of its own: where a world shines on another, what that other shows is lit twice.
     f.runs("second_light", second_light::skip(f.scene));
@@ -114,7 +112,7 @@ fn light(f: &mut FrameContext<'_>, passes: &mut Passes) -> Result<wgpu::TextureV
     let skip = passes.shadow.skip(f.scene);
     let shadow = if f.runs("shadow", skip) { passes.shadow.record(f, &mut passes.ship_geometry) } else { passes.no_shadow.clone() };
 
-    let light = f.shared.light_group(f.gpu, &air, &passes.refracted.table(), passes.sky.mirror(f.scene), &shadow);
+    let light = f.shared.light_group(f.gpu, &air, &refracted, passes.sky.mirror(f.scene), &shadow);
 
     let skip = passes.smooth_body.skip(f.scene);
     if f.runs("smooth_body", skip) {

@@ -166,7 +166,13 @@ fn occluders(r: &Reader<'_>, planet_m: f64) -> Vec<Sphere> {
         // A placeholder after a fault is NaN, and says no more.
         if v == DVec3::ZERO || centre_m.length() <= planet_m + radius_m {
             let from = centre_m.length();
-            t.wrong(by, format!("`occluders.{by}`: expected a sphere outside of the planet, at more than {} m from its centre, not {from}", planet_m + radius_m));
+            t.wrong(
+                by,
+                format!(
+                    "`occluders.{by}`: expected a sphere outside of the planet, at more than {} m from its centre, not {from}",
+                    planet_m + radius_m
+                ),
+            );
         }
         t.finish();
         Sphere { centre_m, radius_m }

@@ -7,7 +7,7 @@ use crate::view::Rig;
 use crate::view::place::PlaceError;
 use crate::world::ship::contact;
 use engine::render::PassReport;
-use engine::scene::Force;
+use engine::scene::{AutoOr, Force};
 use thiserror::Error;
 
 /// Why there is no picture.
@@ -30,7 +30,8 @@ fn rapier(session: &Session) -> PassReport {
 
 /// Draws the picture and writes what was asked for.
 pub fn run(args: &ShotArgs, mut session: Session) -> Result<(), ShotError> {
-    let rig = Rig::parse(&args.camera, &session.world.system)?;
+    let mut rig = Rig::parse(&args.camera, &session.world.system)?;
+    rig.exposure = AutoOr::Auto { compensation_ev: args.compensation.clamp(-20.0, 20.0) };
     if let Some(time) = args.time() {
         // The ship keeps its place about its body; the sky moves to the moment.
         session.world.move_clock(time);

@@ -14,9 +14,10 @@ pub mod view_space;
 pub mod view_table;
 
 use super::Medium;
-use super::refraction::Refractive;
+use super::refraction::{ByWavelength, Refractive};
 use super::spectral::Bands;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 pub use gradient::Gradient;
 pub use limb_table::LimbTable;
@@ -56,6 +57,9 @@ pub struct Air {
     pub bands: Option<Box<Bands>>,
     /// What of it bends light into the planet's shadow.
     pub gases: Vec<Refractive>,
+    /// The star's light by wavelength on its way through the layers, where that is known: a shadow's colour is found from all of it.
+    #[serde(skip)]
+    pub by_wavelength: Option<Arc<ByWavelength>>,
     /// The model and its settings.
     pub model: Model,
 }
@@ -63,6 +67,6 @@ pub struct Air {
 impl From<Medium> for Air {
     /// The default model.
     fn from(medium: Medium) -> Self {
-        Self { bands: None, gases: Refractive::of_medium(&medium), model: Model::default(), medium }
+        Self { bands: None, gases: Refractive::of_medium(&medium), by_wavelength: None, model: Model::default(), medium }
     }
 }

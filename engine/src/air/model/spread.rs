@@ -82,7 +82,8 @@ impl Spread {
         let mut out = Self { altitude_m, ..Self::default() };
         for k in 0..RINGS {
             let end = begin.get(k + 1).copied().unwrap_or(f64::INFINITY);
-            let inside = |first: &Hop| (beyond(first, begin[k]) - if end.is_finite() { beyond(first, end) } else { DVec3::ZERO }).max(DVec3::ZERO);
+            let inside =
+                |first: &Hop| (beyond(first, begin[k]) - if end.is_finite() { beyond(first, end) } else { DVec3::ZERO }).max(DVec3::ZERO);
             (out.low[k], out.high[k]) = (inside(&low), inside(&high));
             let ring = high.light.iter().filter(|l| l.0 >= begin[k] && l.0 < end);
             let (sum, moment) = ring.fold((0.0, 0.0), |(s, m), l| (s + l.1.element_sum(), m + l.0 * l.1.element_sum()));

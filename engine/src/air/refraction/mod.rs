@@ -19,8 +19,12 @@
 pub mod shade;
 
 use super::model::Air;
-use super::{Medium, Phase, Profile};
+use super::spectral::SpectralMedium;
+use super::spectral::bands::channel_weights;
+use super::{Layer, Medium, Phase, Profile};
 use crate::light::occlusion::visible_behind_disc;
+use crate::light::spectrum::{Spectrum, wavelength_nm};
+use crate::units::NM;
 use core::f64::consts::PI;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -48,6 +52,43 @@ impl Refractive {
         gases
             .map(|l| Self { refractivity: refractivity_of_scattering(f64::from(l.scattering_per_m.y)), profile: l.profile.clone() })
             .collect()
+    }
+}
+
+/// The star's light by wavelength, and what each layer of an air takes of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ByWavelength {
+    /// Share of each wavelength in the channels of linear sRGB, and the extinction of each layer at density 1, m⁻¹.
+    list: Vec<(DVec3, Vec<f64>)>,
+}
+
+impl ByWavelength {
+    /// Of an air under a star.
+    pub fn new(medium: &SpectralMedium, star: &Spectrum) -> Self {
+        let shares = channel_weights(star);
+        let wavelengths: Vec<f64> = (0..shares.len()).map(|i| wavelength_nm(i) * NM).collect();
+        Self { list: shares.into_iter().zip(medium.at(&wavelengths)).map(|(share, at)| (share, at.extinction)).collect() }
+    }
+
+    /// Transmittance of columns of the layers, m at density 1.
+    fn through(&self, columns: &[f64]) -> DVec3 {
+        let one =
+            |(share, extinction): &(DVec3, Vec<f64>)| *share * libm::exp(-columns.iter().zip(extinction).map(|(c, e)| c * e).sum::<f64>());
+        self.list.iter().map(one).sum()
+    }
+}
+
+/// Transmittance of columns of an air's layers, m at density 1: by all wavelengths, by its bands, or by its channels, whichever is known best.
+fn through(air: &Air, columns: &[f64]) -> DVec3 {
+    let of = |medium: &Medium| {
+        let extinction = |l: &Layer| (l.scattering_per_m + l.absorption_per_m).as_dvec3();
+        let depth: DVec3 = medium.layers.iter().zip(columns).map(|(l, c)| extinction(l) * *c).sum();
+        DVec3::new(libm::exp(-depth.x), libm::exp(-depth.y), libm::exp(-depth.z))
+    };
+    match (&air.by_wavelength, &air.bands) {
+        (Some(all), _) => all.through(columns),
+        (None, Some(bands)) => bands.mix([of(&bands.media[0]), of(&bands.media[1])]),
+        (None, None) => of(&air.medium),
     }
 }
 
@@ -209,8 +250,7 @@ fn graze(air: &Air, altitude_m: f64) -> Option<Graze> {
         return Some(Graze { altitude_m, impact_m, bend_rad: 0.0, transmittance: DVec3::ONE });
     }
     let mut bend_rad = 0.0;
-    let media: Vec<&Medium> = air.bands.as_ref().map_or_else(|| vec![medium], |b| b.media.iter().collect());
-    let mut depths = vec![DVec3::ZERO; media.len()];
+    let mut columns = vec![0.0; medium.layers.len()];
     for i in 0..POINTS {
         let t = (f64::from(i) + 0.5) / f64::from(POINTS) * reach;
         let h = altitude_m + t * t;
@@ -222,16 +262,11 @@ fn graze(air: &Air, altitude_m: f64) -> Option<Graze> {
         }
         let weight = 2.0 * t * reach / f64::from(POINTS) / (less * (n * r + impact_m)).sqrt();
         bend_rad -= 2.0 * impact_m * slope(h) / n * weight;
-        for (depth, medium) in depths.iter_mut().zip(&media) {
-            *depth += 2.0 * n * r * weight * medium.extinction(h);
+        for (column, layer) in columns.iter_mut().zip(&medium.layers) {
+            *column += 2.0 * n * r * weight * layer.profile.density(h);
         }
     }
-    let through = |d: &DVec3| DVec3::new(libm::exp(-d.x), libm::exp(-d.y), libm::exp(-d.z));
-    let transmittance = match (&air.bands, depths.as_slice()) {
-        (Some(bands), [one, other]) => bands.mix([through(one), through(other)]),
-        (_, own) => own.first().map_or(DVec3::ONE, through),
-    };
-    Some(Graze { altitude_m, impact_m, bend_rad, transmittance })
+    Some(Graze { altitude_m, impact_m, bend_rad, transmittance: through(air, &columns) })
 }
 
 /// Bending by an isothermal gas of refractivity ν and scale height H at the lowest point, radius r: `ν √(2πr/H)`, for ν r ≪ H.

@@ -1,24 +1,27 @@
 //! The light in a planet's shadow as a table: rows by distance behind the planet, columns by angle from the axis. The picture's own
 //! form of [`Limb::light`]; `shaders/lib/refracted.wgsl` reads it, [`read`] is its twin.
 //!
-//! Rows lie evenly in the logarithm of the distance to the limb, columns from the deepest shadow that any light
-//! reaches to where the whole disc stands above the air, closer in the dark, by the square. A row is made when a receiver needs it: a moon needs two.
+//! Rows lie evenly in the logarithm of the distance to the limb. Their columns go from the deepest shadow that any light reaches to where the
+//! whole disc stands above the air: the first half through the umbra, closer in the dark, by the square; the other half evenly across its edge and
+//! the penumbra. A row is made when a receiver needs it: a moon needs three or four.
 
 use super::{Behind, Limb, Ring, sum};
 use crate::space::relative::narrow;
 use glam::DVec3;
 
 /// Columns of a row; behind them stands one texel more: the row's span.
-pub const COLUMNS: usize = 127;
+pub const COLUMNS: usize = 2 * HALF + 1;
+/// Columns of each half.
+const HALF: usize = 96;
 /// Rows.
-pub const ROWS: usize = 160;
+pub const ROWS: usize = 288;
 /// Rows for each doubling of the distance.
-const PER_OCTAVE: f64 = 10.0;
+const PER_OCTAVE: f64 = 20.0;
 /// Steps of the star's distance for each doubling: what is kept is good for 0.1 % of it.
 const STAR_PER_OCTAVE: f64 = 512.0;
 
-/// A row's texels: fourth roots of the light; then the span of angles from the geometric limb: inwards, outwards (rad), and the first
-/// row's distance to the limb, m.
+/// A row's texels: fourth roots of the light; then the angles from the geometric limb (rad, outwards) at which it begins, its halves meet
+/// and it ends, and the first row's distance to the limb, m.
 pub type Row = [[f32; 4]; COLUMNS + 1];
 
 /// A planet's limb, and the star that it is seen before.
@@ -74,18 +77,17 @@ impl Shade {
         let (sun_rad, rings) = (behind.sun_rad(), self.limb.rings(&behind));
         let limb_rad = libm::asin(self.limb.radius_m / behind.distance_m);
         let lowest = rings.iter().map(|r: &Ring| r.source_rad).fold(f64::INFINITY, f64::min);
+        let begin = (lowest - sun_rad).max(0.0) - limb_rad;
+        let end = rings.last().map_or(limb_rad, |r| r.seen_rad) + sun_rad - limb_rad;
         // Held as the shader will have them.
-        let inwards = narrow(limb_rad - (lowest - sun_rad).max(0.0));
-        let outwards = narrow(rings.last().map_or(limb_rad, |r| r.seen_rad) + sun_rad - limb_rad);
+        let span = [begin, begin.max(-1.15 * sun_rad), end].map(narrow);
         let mut texels = [[0.0; 4]; COLUMNS + 1];
         for (i, texel) in texels.iter_mut().take(COLUMNS).enumerate() {
-            let x = i as f64 / (COLUMNS - 1) as f64;
-            let gap = f64::from(inwards + outwards) * x * x - f64::from(inwards);
-            let light = sum(&rings, sun_rad, (limb_rad + gap).max(0.0));
+            let light = sum(&rings, sun_rad, (limb_rad + gap_of(span, i)).max(0.0));
             let root = |x: f64| narrow(x.sqrt().sqrt());
             *texel = [root(light.x), root(light.y), root(light.z), 0.0];
         }
-        texels[COLUMNS] = [inwards, outwards, narrow(self.nearest_m), 0.0];
+        texels[COLUMNS] = [span[0], span[1], span[2], narrow(self.nearest_m)];
         texels
     }
 
@@ -94,15 +96,28 @@ impl Shade {
     pub fn read(&self, rows: &dyn Fn(usize) -> Row, distance_m: f64, gap_rad: f64) -> DVec3 {
         let v = self.row_of(distance_m);
         let (low, part) = (v as usize, v.fract());
-        let (a, b) = (rows(low), rows(low + 1));
-        let mix = |i: usize, c: usize, t: f64| f64::from(a[i][c]) * (1.0 - t) + f64::from(b[i][c]) * t;
-        let (inwards, outwards) = (mix(COLUMNS, 0, part), mix(COLUMNS, 1, part));
-        let x = ((gap_rad + inwards) / (inwards + outwards)).clamp(0.0, 1.0).sqrt() * (COLUMNS - 1) as f64;
-        let i = (x as usize).min(COLUMNS - 2);
-        let t = x - i as f64;
-        let root = |c: usize| mix(i, c, part) * (1.0 - t) + mix(i + 1, c, part) * t;
-        DVec3::new(root(0), root(1), root(2)).powf(4.0)
+        let root = root_in(&rows(low), gap_rad) * (1.0 - part) + root_in(&rows(low + 1), gap_rad) * part;
+        root.powf(4.0)
     }
+}
+
+/// Angle from the limb of a column.
+fn gap_of(span: [f32; 3], column: usize) -> f64 {
+    let [begin, middle, end] = span.map(f64::from);
+    let x = column as f64 / HALF as f64;
+    if x < 1.0 { begin + (middle - begin) * x * x } else { middle + (end - middle) * (x - 1.0) }
+}
+
+/// Fourth root of the light in a row.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+fn root_in(row: &Row, gap_rad: f64) -> DVec3 {
+    let [begin, middle, end, _] = row[COLUMNS].map(f64::from);
+    let inner = ((gap_rad - begin) / (middle - begin).max(1e-9)).clamp(0.0, 1.0).sqrt();
+    let x = (inner + ((gap_rad - middle) / (end - middle).max(1e-9)).clamp(0.0, 1.0)) * HALF as f64;
+    let i = (x as usize).min(COLUMNS - 2);
+    let t = x - i as f64;
+    let root = |c: usize| f64::from(row[i][c]) * (1.0 - t) + f64::from(row[i + 1][c]) * t;
+    DVec3::new(root(0), root(1), root(2))
 }
 
 /// A star's distance in its steps.

@@ -184,15 +184,7 @@ impl AirBaker {
 
     #[allow(clippy::cast_possible_truncation)]
     fn slot_of(&mut self, id: u16, part: Part, medium: &Medium) -> Option<u32> {
-        let fresh = || Slot {
-            id,
-            part,
-            medium: medium.clone(),
-            spread: Spread::new(medium),
-            bands: None,
-            used: self.clock,
-            baked: false,
-        };
+        let fresh = || Slot { id, part, medium: medium.clone(), spread: Spread::new(medium), bands: None, used: self.clock, baked: false };
         let at = match self.slots.iter().position(|s| s.id == id && s.part == part) {
             Some(i) => i,
             None if self.slots.len() < MAX_AIRS => {

@@ -18,7 +18,7 @@ use std::ops::RangeInclusive;
 use wgpu::TextureUsages;
 
 /// Planets whose shadows are kept.
-const KEPT: usize = 8;
+const KEPT: usize = 6;
 
 /// The shadow of one planet.
 struct Layer {
@@ -125,9 +125,9 @@ impl Refracted {
             .then(|| "the shadows in view are as they were when their tables were made".to_owned())
     }
 
-    /// Makes the rows that wait.
+    /// Makes the rows that wait, and gives the table.
     #[allow(clippy::cast_possible_truncation)]
-    pub fn record(&mut self, f: &FrameContext<'_>) {
+    pub fn record(&mut self, f: &FrameContext<'_>) -> wgpu::TextureView {
         for (at, layer) in self.layers.iter_mut().enumerate().filter(|(_, l)| !l.wanted.is_empty()) {
             let Some(shade) = &layer.shade else { continue };
             for row in core::mem::take(&mut layer.wanted) {
@@ -139,6 +139,7 @@ impl Refracted {
             let texels: Vec<[f32; 4]> = layer.rows.iter().flat_map(|row| row.unwrap_or(empty)).collect();
             self.texture.write(&f.gpu.queue, 0, at as u32, bytemuck::cast_slice(&texels));
         }
+        self.table()
     }
 
     /// The table, a layer per planet.

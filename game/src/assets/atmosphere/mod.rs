@@ -17,12 +17,14 @@ use super::tree::{Data, Node};
 use crate::world::system::Fog;
 use engine::air::density::Lapse;
 use engine::air::model::{ColourMap, Gradient};
+use engine::air::refraction::ByWavelength;
 use engine::air::spectral::SpectralMedium;
 use engine::air::{Air, Column, ColumnSpec, Model, RangeError};
 use engine::light::spectrum::Starlight;
 use engine::units::NM;
 use optics::Channels;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// Air as its file describes it.
 #[derive(Clone, Debug, Default)]
@@ -137,7 +139,8 @@ fn look_of(r: &Reader<'_>, datum: Datum, setting: &Setting<'_>) -> Option<(Air, 
     }
     let (medium, bands) = drawn?;
     let gases = by_wavelength.refractive();
-    Some((Air { medium, bands, gases, model: model? }, by_wavelength))
+    let light = ByWavelength::new(&by_wavelength, &setting.star.spectrum());
+    Some((Air { medium, bands, gases, by_wavelength: Some(Arc::new(light)), model: model? }, by_wavelength))
 }
 
 /// The model that a word names, with the settings in the table of that name.
