@@ -102,7 +102,7 @@ fn air_march(
                 let s = dot(n.s, one);
                 var eclipse = NO_ECLIPSE;
                 if AIR_ECLIPSES && shade.falls {
-                    eclipse = eclipse_at(body, star, ray * (path.start + s), air_rings(air, dot(n.altitude, one)));
+                    eclipse = eclipse_at(body, star, ray * (path.start + s), air_rings(air, dot(n.altitude, one), (along.up_sun + s * along.ray_sun) / air.shape.x));
                 }
                 // Where a point stands for much optical depth, the collocation overshoots: there its source is taken as even over its share.
                 let own = depths * (GAUSS_WEIGHT * one);

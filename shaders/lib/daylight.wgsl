@@ -27,7 +27,7 @@ fn daylight(
     if body.ids.y > 0 && (slot >= 0 || body.lights.x == 0) {
         var rings = NO_RINGS;
         if slot >= 0 {
-            rings = air_rings(air, altitude);
+            rings = air_rings(air, altitude, mu_s);
         }
         eclipse = eclipse_at(body, star, point, rings);
     }

@@ -30,7 +30,7 @@ struct Air {
     jumps_high: vec4<f32>,
     orders: vec4<f32>,          // how the sun's height is mapped in the table of further orders: SunMap of engine/src/air/model/orders.rs, 0
     bands: array<vec4<f32>, 6>, // columns of the matrices to linear sRGB of the two media that draw it; w of a first: that medium's slot; w of [1]: how many of the two
-    rings: array<vec4<f32>, 8>, // from how far scattered light comes: engine/src/air/model/spread.rs. Four of weights at the datum and radius, four of their rise per m and where it ends
+    rings: array<vec4<f32>, 16>, // from how far scattered light comes: engine/src/air/model/spread.rs. Weights at the datum (w: radius), their rise with altitude, both more under a high sun
 }
 
 struct Airs {
@@ -48,13 +48,17 @@ struct Rings {
     weight: mat4x3<f32>,  // a column per ring, per channel; the point itself has the rest to 1
     radius: vec4<f32>,    // along the ground, m
 }
-fn air_rings(air: Air, altitude: f32) -> Rings {
-    let h = clamp(altitude, 0.0, air.rings[4].w);
+fn air_rings(air: Air, altitude: f32, mu_s: f32) -> Rings {
+    // Between the datum and the altitude of the second four weights rise as x (1 + x) / 2; with the sun's height evenly.
+    let x = clamp(altitude * air.rings[4].w, 0.0, 1.0);
+    let h = 0.5 * (x + x * x);
+    let m = clamp((mu_s - air.rings[5].w) * air.rings[6].w, 0.0, 1.0);
     return Rings(
-        mat4x3<f32>(
-            air.rings[0].rgb + h * air.rings[4].rgb, air.rings[1].rgb + h * air.rings[5].rgb,
-            air.rings[2].rgb + h * air.rings[6].rgb, air.rings[3].rgb + h * air.rings[7].rgb),
+        mat4x3<f32>(ring_weight(air, 0u, h, m), ring_weight(air, 1u, h, m), ring_weight(air, 2u, h, m), ring_weight(air, 3u, h, m)),
         vec4<f32>(air.rings[0].w, air.rings[1].w, air.rings[2].w, air.rings[3].w));
+}
+fn ring_weight(air: Air, k: u32, h: f32, m: f32) -> vec3<f32> {
+    return air.rings[k].rgb + h * air.rings[4u + k].rgb + m * (air.rings[8u + k].rgb + h * air.rings[12u + k].rgb);
 }
 
 // From the channels of the k-th of the media that draw the air to linear sRGB. One that is not drawn in bands is the first itself.

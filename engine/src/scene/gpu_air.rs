@@ -2,7 +2,7 @@
 
 use super::gpu_data::vec4;
 use crate::air::model::orders::SunMap;
-use crate::air::model::spread::{RINGS, Spread};
+use crate::air::model::spread::{RINGS, SUNS, Spread};
 use crate::air::model::view_space::Spacing;
 use crate::air::model::view_table::{AlphaColour, Split, ViewTable};
 use crate::air::{Classes, Layer, Medium, Phase, Profile};
@@ -51,7 +51,7 @@ pub struct AirUniform {
     pub jumps_high: [f32; 4],
     pub orders: [f32; 4],
     pub bands: [[f32; 4]; 6],
-    pub rings: [[f32; 4]; 2 * RINGS],
+    pub rings: [[f32; 4]; 4 * RINGS],
 }
 
 /// `Airs` of `shaders/lib/medium.wgsl`.
@@ -90,10 +90,13 @@ impl AirUniform {
     /// With the rings from which scattered light comes to a point in an eclipse.
     #[must_use]
     pub fn with_rings(mut self, spread: &Spread) -> Self {
-        let rise = 1.0 / spread.altitude_m.max(1e-3);
-        for k in 0..RINGS {
-            self.rings[k] = vec4(narrow3(spread.low[k]), narrow(spread.radius_m[k]));
-            self.rings[RINGS + k] = vec4(narrow3((spread.high[k] - spread.low[k]) * rise), narrow(2.0 * spread.altitude_m));
+        let w = [narrow(1.0 / spread.altitude_m.max(1e-3)), narrow(SUNS[0]), narrow(1.0 / (SUNS[1] - SUNS[0])), 0.0];
+        for (k, w) in w.into_iter().enumerate() {
+            let rise = [0, 1].map(|sun| spread.high[sun][k] - spread.low[sun][k]);
+            self.rings[k] = vec4(narrow3(spread.low[0][k]), narrow(spread.radius_m[k]));
+            self.rings[RINGS + k] = vec4(narrow3(rise[0]), w);
+            self.rings[2 * RINGS + k] = vec4(narrow3(spread.low[1][k] - spread.low[0][k]), 0.0);
+            self.rings[3 * RINGS + k] = vec4(narrow3(rise[1] - rise[0]), 0.0);
         }
         self
     }
