@@ -25,15 +25,13 @@ struct AirNodes {
 // Points of panel `panel` of `panels` on the stretch.
 fn air_nodes(air: Air, path: AirPath, begin: f32, end: f32, panel: u32, panels: u32) -> AirNodes {
     let rising = 0.5 * (begin + end) + path.slope > 0.0;
-    let eye = rising && begin <= 0.0 && path.start <= 0.0;
     let part = 1.0 / f32(panels);
     let x = (f32(panel) + GAUSS_X) * part;
     let u = select(vec4<f32>(1.0) - x, x, rising);
-    let root = sqrt(u);
     let length = end - begin;
-    let away = length * select(u * root, u * u, eye);
+    let away = length * u * u;
     let s = select(end - away, begin + away, rising);
-    return AirNodes(s, (length * part) * select(1.5 * root, 2.0 * u, eye), air_altitudes(air, path, s));
+    return AirNodes(s, (2.0 * length * part) * u, air_altitudes(air, path, s));
 }
 
 // Where the next stretch ends: at the nearest of `cuts`, the lowest point, a jump of density, or `end`.
