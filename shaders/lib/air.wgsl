@@ -1,6 +1,6 @@
 // Air for other passes: how sunlight is reddened on its way to a point, and how the sky lights the ground.
 //
-// The tables are 2-D arrays, a layer per slot (Body.ids.z; −1: no air, ask nothing). Bind from group 1: @binding(0) var<uniform>
+// The tables are 2-D arrays, a layer per slot (two of transmittance; Body.ids.z; −1: no air, ask nothing). Bind from group 1: @binding(0) var<uniform>
 // airs: Airs; @binding(1) transmittance, @binding(3) irradiance: texture_2d_array<f32>; @binding(2) orders: texture_3d<f32>; @binding(4) sampler.
 // Altitudes are above the datum in m and may be negative; `mu_s` is the cosine of the sun's zenith angle at the point.
 // Made by engine/src/render/pass/air_tables.rs. Not here: light along a ray of sight (lib/air_march.wgsl); all of it together for a surface (lib/daylight.wgsl).
@@ -48,7 +48,13 @@ fn transmittance_point(air: Air, x: vec2<f32>) -> vec3<f32> {
 // Transmittance from a point to the top of the air towards the sun; below the horizon: that of the horizon.
 fn air_sun_transmittance(air: Air, table: texture_2d_array<f32>, linear: sampler, slot: i32, altitude: f32, mu_s: f32) -> vec3<f32> {
     let uv = table_uv(transmittance_x(air, altitude, mu_s), TRANSMITTANCE_SIZE);
-    return textureSampleLevel(table, linear, uv, slot, 0.0).rgb;
+    return textureSampleLevel(table, linear, uv, 2 * slot, 0.0).rgb;
+}
+// The same of the beam, which has the light that scattering left going straight on (layer 2 slot + 1); a: which part of it was never
+// scattered. Of layer 2 slot: that part alone.
+fn air_sun_beam(air: Air, table: texture_2d_array<f32>, linear: sampler, layer: i32, altitude: f32, mu_s: f32) -> vec4<f32> {
+    let uv = table_uv(transmittance_x(air, altitude, mu_s), TRANSMITTANCE_SIZE);
+    return textureSampleLevel(table, linear, uv, layer, 0.0);
 }
 
 // Illuminance by the sky on horizontal ground, per unit of the sun's illuminance above the air. On a slope whose normal makes

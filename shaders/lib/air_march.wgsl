@@ -17,7 +17,7 @@ struct AirSun {
     direction: vec3<f32>,
     angular_radius: f32,
     single: f32,    // 1; 0 leaves direct light out
-    multiple: f32,  // 1; 0 leaves further orders out
+    multiple: f32,  // 1; 0 leaves further orders out, those of the aureole too
 }
 
 // All that is the same at every point of a ray.
@@ -27,17 +27,20 @@ struct AirRay {
     up_sun: f32,       // r₀ μₛ at the start
     ray_sun: f32,
     phase: vec4<f32>,
+    aureole: vec4<f32>,  // of light that forward peaks have turned before
+    beam: i32,           // layer of the transmittance that has it
 }
 
-// Light scattered towards the eye at a point, m⁻¹ sr⁻¹ per unit of illuminance. `phased` and `scattering` are the point's scattering
-// with and without the classes' phase functions, per channel.
+// Light scattered towards the eye at a point, m⁻¹ sr⁻¹ per unit of illuminance. `phased`, `turned` and `scattering` are the point's scattering
+// by the classes' phase functions, by those of the aureole, and by none, per channel.
 fn air_source(
     air: Air, transmittance: texture_2d_array<f32>, orders: texture_3d<f32>, linear: sampler, slot: i32,
-    along: AirRay, sun: AirSun, phased: vec3<f32>, scattering: vec3<f32>, s: f32, altitude: f32, eclipse: Eclipse,
+    along: AirRay, sun: AirSun, phased: vec3<f32>, turned: vec3<f32>, scattering: vec3<f32>, s: f32, altitude: f32, eclipse: Eclipse,
 ) -> vec3<f32> {
     let mu_s = (along.up_sun + s * along.ray_sun) / (air.shape.x + altitude);
     let lit = visible_above_limb(sun.angular_radius, sun_elevation(air.shape.x, altitude, mu_s));
-    return phased * (lit * eclipse.direct) * air_sun_transmittance(air, transmittance, linear, slot, altitude, mu_s)
+    let beam = air_sun_beam(air, transmittance, linear, along.beam, altitude, mu_s);
+    return mix(turned, phased, beam.a) * (lit * eclipse.direct) * beam.rgb
         + scattering * (sun.multiple * eclipse.diffuse)
             * air_orders(air, orders, linear, slot, altitude, mu_s, (along.path.slope + s) / (air.shape.x + altitude), along.ray_sun);
 }
@@ -70,7 +73,8 @@ fn air_march(
 ) -> AirLight {
     let cosine = dot(ray, sun.direction);
     let along = AirRay(
-        path, ray, path.radius * dot(path.up, sun.direction), cosine, air_phase(air, media, slot, cosine) * sun.single);
+        path, ray, path.radius * dot(path.up, sun.direction), cosine, air_phase(air, media, slot, cosine) * sun.single,
+        air_aureole(air, cosine) * sun.single, 2 * slot + i32(sun.multiple));
     let night = air_night(air.shape.x, path, along.up_sun, cosine, sun.angular_radius, end);
     var shade = AirShade(vec4<f32>(-1.0), false);
     if AIR_ECLIPSES && body.ids.y > 0 {
@@ -95,6 +99,7 @@ fn air_march(
             let depths = mat4x3<f32>(m0.extinction * n.span.x, m1.extinction * n.span.y, m2.extinction * n.span.z, m3.extinction * n.span.w);
             let run = depths * GAUSS_RUN;
             let phased = mat4x3<f32>(m0.scattering * along.phase, m1.scattering * along.phase, m2.scattering * along.phase, m3.scattering * along.phase);
+            let turned = mat4x3<f32>(m0.scattering * along.aureole, m1.scattering * along.aureole, m2.scattering * along.aureole, m3.scattering * along.aureole);
             let all = mat4x3<f32>(m0.scattering * ONES, m1.scattering * ONES, m2.scattering * ONES, m3.scattering * ONES);
             var before = vec3<f32>(0.0);
             for (var j = 0u; j < 4u; j++) {
@@ -109,7 +114,7 @@ fn air_march(
                 let even = (1.0 - exp(-own)) / max(own, vec3<f32>(1e-6));
                 let seen = mix(exp(-clamp(run * one - before, vec3<f32>(0.0), own)), even, smoothstep(vec3<f32>(3.0), vec3<f32>(6.0), own));
                 out.radiance += (dot(n.span * GAUSS_WEIGHT, one) * exp(-depth - before)) * seen
-                    * air_source(air, transmittance, orders, linear, slot, along, sun, phased * one, all * one, s, dot(n.altitude, one), eclipse);
+                    * air_source(air, transmittance, orders, linear, slot, along, sun, phased * one, turned * one, all * one, s, dot(n.altitude, one), eclipse);
                 before += own;
             }
             depth += depths * GAUSS_WEIGHT;

@@ -17,20 +17,24 @@ fn horizon_dip(radius: f32, altitude: f32) -> vec2<f32> {
     return vec2<f32>(sqrt(h * (2.0 * radius + h)), radius) / (radius + h);
 }
 
-// Coordinate of the sun, 0 to 1, from the dip and the cosine of the sun's zenith angle: air.orders holds its SunMap. With e the sun's
-// angle above the horizon, t = 2 sin(e/2) = sin e / cos(e/2) keeps its digits near zero.
+// Coordinate of the sun, 0 to 1, from the dip and the cosine of the sun's zenith angle: air.orders holds its SunMap (scale, low, inverse,
+// knee). With e the sun's angle above the horizon, t = 2 sin(e/2) = sin e / cos(e/2) keeps its digits near zero.
 fn orders_sun_x(air: Air, dip: vec2<f32>, mu_s: f32) -> f32 {
     let level = sqrt(max(1.0 - mu_s * mu_s, 0.0));
     let sine = mu_s * dip.y + level * dip.x;
     let cosine = level * dip.y - mu_s * dip.x;
-    let t = sine * inverseSqrt(max(0.5 + 0.5 * cosine, 1e-6)) * air.orders.x;
-    let asinh_t = sign(t) * log(abs(t) + sqrt(t * t + 1.0));
-    return clamp((asinh_t + air.orders.y) * air.orders.z, 0.0, 1.0);
+    let t = sine * inverseSqrt(max(0.5 + 0.5 * cosine, 1e-6));
+    let low = min(t, air.orders.w) * air.orders.x;
+    let asinh_low = sign(low) * log(abs(low) + sqrt(low * low + 1.0));
+    return clamp((asinh_low + max(t / air.orders.w - 1.0, 0.0) + air.orders.y) * air.orders.z, 0.0, 1.0);
 }
 // The inverse: cosine of the sun's zenith angle.
 fn orders_sun_mu(air: Air, dip: vec2<f32>, x: f32) -> f32 {
     // At low altitudes the sun stands in the zenith before x is 1.
-    let t = clamp(sinh(x / air.orders.z - air.orders.y) / air.orders.x, -2.0, sqrt(2.0 + 2.0 * dip.x));
+    let y = x / air.orders.z - air.orders.y;
+    let knee = air.orders.w * air.orders.x;
+    let above = max(y - log(knee + sqrt(knee * knee + 1.0)), 0.0);
+    let t = clamp(select(sinh(y) / air.orders.x, air.orders.w * (1.0 + above), above > 0.0), -1.41421356, sqrt(2.0 + 2.0 * dip.x));
     let sine = t * sqrt(max(1.0 - 0.25 * t * t, 0.0));
     return clamp(sine * dip.y - (1.0 - 0.5 * t * t) * dip.x, -1.0, 1.0);
 }

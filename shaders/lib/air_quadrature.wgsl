@@ -1,8 +1,7 @@
 // Quadrature along a path: stretches between cuts, panels of four Gauss–Legendre points on each, running integrals between the points.
 //
 // A stretch never holds the path's lowest point, the edge of a shadow or a jump of density inside it, so that what is integrated is smooth
-// there. Points lie by powers of the distance from the stretch's lower end, where air is densest: its square where the eye stands in that
-// end, its 1.5th power elsewhere. Integrals from a panel's beginning to each of its points come from the same four values as the whole
+// there. Points lie by squares from the stretch's lower end, where air is densest. Integrals from a panel's beginning to each of its points come from the same four values as the whole
 // [Butcher 1964, "Implicit Runge-Kutta Processes": the collocation matrix of the Gauss points].
 
 #include "lib/air_path.wgsl"
@@ -25,15 +24,13 @@ struct AirNodes {
 // Points of panel `panel` of `panels` on the stretch.
 fn air_nodes(air: Air, path: AirPath, begin: f32, end: f32, panel: u32, panels: u32) -> AirNodes {
     let rising = 0.5 * (begin + end) + path.slope > 0.0;
-    let eye = rising && begin <= 0.0 && path.start <= 0.0;
     let part = 1.0 / f32(panels);
     let x = (f32(panel) + GAUSS_X) * part;
     let u = select(vec4<f32>(1.0) - x, x, rising);
-    let root = sqrt(u);
     let length = end - begin;
-    let away = length * select(u * root, u * u, eye);
+    let away = length * u * u;
     let s = select(end - away, begin + away, rising);
-    return AirNodes(s, (length * part) * select(1.5 * root, 2.0 * u, eye), air_altitudes(air, path, s));
+    return AirNodes(s, (2.0 * length * part) * u, air_altitudes(air, path, s));
 }
 
 // Where the next stretch ends: at the nearest of `cuts`, the lowest point, a jump of density, or `end`.
@@ -60,9 +57,10 @@ fn next_jump(air: Air, path: AirPath, least: f32, end: f32, altitude: vec4<f32>)
 
 const NO_CUTS: vec4<f32> = vec4<f32>(-1.0);
 
-// Optical depth from 0 to `end`.
-fn air_optical_depth(air: Air, media: texture_2d_array<f32>, slot: i32, path: AirPath, end: f32, panels: u32) -> vec3<f32> {
+// Optical depth from 0 to `end`, and of it that of light which scattering leaves going straight on.
+fn air_optical_depths(air: Air, media: texture_2d_array<f32>, slot: i32, path: AirPath, end: f32, panels: u32) -> mat2x3<f32> {
     var depth = vec3<f32>(0.0);
+    var forward = vec3<f32>(0.0);
     var begin = 0.0;
     for (var k = 0u; k < 24u && begin < end; k++) {
         let next = air_next_cut(air, path, begin, end, NO_CUTS, NO_CUTS);
@@ -70,10 +68,12 @@ fn air_optical_depth(air: Air, media: texture_2d_array<f32>, slot: i32, path: Ai
             let nodes = air_nodes(air, path, begin, next, i, panels);
             let weights = nodes.span * GAUSS_WEIGHT;
             for (var j = 0u; j < 4u; j++) {
-                depth += air_extinction(air, media, slot, nodes.altitude[j]) * weights[j];
+                let matter = air_matter(air, media, slot, nodes.altitude[j]);
+                depth += matter.extinction * weights[j];
+                forward += matter.scattering * (air.forward * weights[j]);
             }
         }
         begin = next;
     }
-    return depth;
+    return mat2x3<f32>(depth, forward);
 }

@@ -12,13 +12,14 @@ const AZIMUTHS: u32 = 6u;
 const COSINE: array<f32, 6> = array<f32, 6>(0.9659258, 0.7071068, 0.2588190, -0.2588190, -0.7071068, -0.9659258);
 
 @group(0) @binding(0) var<uniform> air: Air;
-@group(0) @binding(1) var transmittance: texture_2d_array<f32>;
+@group(0) @binding(1) var transmittance: texture_2d_array<f32>;               // of this air alone
 @group(0) @binding(2) var linear: sampler;
 @group(0) @binding(3) var<uniform> order: vec4<u32>;                          // which (0: the first), how many, slot, 0
 @group(0) @binding(4) var<storage, read> plan: array<vec4<f32>>;
 @group(0) @binding(5) var<storage, read_write> gathered: array<vec4<f32>>;    // altitude, direction, sun: modes of red, of green, of blue
 @group(0) @binding(6) var<storage, read_write> sources: array<vec4<f32>>;     // order, altitude, view, sun: coded modes of red, of green, of blue
-@group(0) @binding(7) var<storage, read_write> irradiance: array<vec4<f32>>;  // order, altitude, sun: its fourth root
+@group(0) @binding(7) var<storage, read_write> irradiance: array<vec4<f32>>;  // order, altitude, sun: its fourth root; after all orders what the aureole adds
+@group(0) @binding(8) var<storage, read_write> drawn: array<vec4<f32>>;       // like sources, by the phase functions' full shape
 
 // The sources of the order before at a step's altitude and zenith cosine, for every sun.
 var<workgroup> red: array<vec4<f32>, ORDERS_SUNS>;
@@ -82,13 +83,13 @@ fn first(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_index) 
                 for (var l = 0u; l < PLAN_DEGREES; l++) {
                     turned += plan[step + 3u + l].rgb * legendre[l];
                 }
-                light += turned * visible * air_sun_transmittance(air, transmittance, linear, 0, place.w, mu_s);
+                light += turned * visible * air_sun_beam(air, transmittance, linear, 1, place.w, mu_s).rgb;
             }
         }
         let mu_s = clamp(head.y * mu + head.z * turn, -1.0, 1.0);
         if max(max(ground.r, ground.g), ground.b) > 0.0 && mu_s > 0.0 {
             light += ground * (mu_s * visible_above_limb(SUN_RAD, asin_small(min(mu_s, 0.3))))
-                * air_sun_transmittance(air, transmittance, linear, 0, 0.0, mu_s);
+                * air_sun_beam(air, transmittance, linear, 1, 0.0, mu_s).rgb;
         }
         sum = add_modes(sum, light, COSINE[a]);
     }
@@ -153,11 +154,21 @@ fn next(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_index) k
     store(at, k, sum);
 }
 
+// Illuminance on level ground by the light that scattering left going straight on: of the sky, but in no order's radiance.
+fn aureole(row: u32, mu: f32) -> vec3<f32> {
+    let root = f32(row) / f32(ORDERS_ALTITUDES - 1u);
+    let altitude = root * root * air.shape.y;
+    let lit = max(mu, 0.0) * visible_above_limb(SUN_RAD, sun_elevation(air.shape.x, altitude, mu));
+    return lit * (air_sun_beam(air, transmittance, linear, 1, altitude, mu).rgb - air_sun_transmittance(air, transmittance, linear, 0, altitude, mu));
+}
+
 // A thread per sun, a group per view and altitude.
 @compute @workgroup_size(32)
 fn turn(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_index) k: u32) {
     let kernel = PLAN_KERNELS_AT + (at.y * ORDERS_VIEWS + at.x) * PLAN_DIRECTIONS * 3u;
+    let full = kernel + PLAN_DRAWN_AT - PLAN_KERNELS_AT;
     var sum = Modes(vec4<f32>(0.0), vec4<f32>(0.0), vec4<f32>(0.0));
+    var sharp = Modes(vec4<f32>(0.0), vec4<f32>(0.0), vec4<f32>(0.0));
     var lit = vec3<f32>(0.0);
     for (var d = 0u; d < PLAN_DIRECTIONS; d++) {
         let at_direction = ((at.y * PLAN_DIRECTIONS + d) * ORDERS_SUNS + k) * 3u;
@@ -166,13 +177,22 @@ fn turn(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_index) k
         sum.red += plan[by] * light.red;
         sum.green += plan[by + 1u] * light.green;
         sum.blue += plan[by + 2u] * light.blue;
+        sharp.red += plan[full + d * 3u] * light.red;
+        sharp.green += plan[full + d * 3u + 1u] * light.green;
+        sharp.blue += plan[full + d * 3u + 2u] * light.blue;
         lit += plan[(at.y * PLAN_DIRECTIONS + d) * PLAN_PATH].w * vec3<f32>(light.red.x, light.green.x, light.blue.x);
     }
     let to = (((order.x * ORDERS_ALTITUDES + at.y) * ORDERS_VIEWS + at.x) * ORDERS_SUNS + k) * 3u;
     sources[to] = orders_encode(sum.red);
     sources[to + 1u] = orders_encode(sum.green);
     sources[to + 2u] = orders_encode(sum.blue);
+    drawn[to] = orders_encode(sharp.red);
+    drawn[to + 1u] = orders_encode(sharp.green);
+    drawn[to + 2u] = orders_encode(sharp.blue);
     if at.x == 0u {
+        if order.x == 0u {
+            irradiance[(PLAN_MAX_ORDERS * ORDERS_ALTITUDES + at.y) * ORDERS_SUNS + k] = vec4<f32>(aureole(at.y, sun_mu(at.y, k)), 0.0);
+        }
         irradiance[(order.x * ORDERS_ALTITUDES + at.y) * ORDERS_SUNS + k] = vec4<f32>(sqrt(sqrt(max(lit, vec3<f32>(0.0)))), 0.0);
     }
 }

@@ -8,9 +8,10 @@
 
 @group(0) @binding(3) var<uniform> order: vec4<u32>;                          // 0, how many, slot, 0
 @group(0) @binding(4) var<storage, read> sources: array<vec4<f32>>;           // order, altitude, view, sun: coded modes of red, of green, of blue
-@group(0) @binding(5) var<storage, read> irradiance: array<vec4<f32>>;        // order, altitude, sun: its fourth root
+@group(0) @binding(5) var<storage, read> irradiance: array<vec4<f32>>;        // order, altitude, sun: its fourth root; then the aureole's
 @group(0) @binding(6) var<storage, read_write> scalars: array<vec4<f32>>;     // products, row by row of PLAN_MAX_ORDERS
 @group(0) @binding(7) var table: texture_storage_3d<rgba16float, write>;
+@group(0) @binding(9) var<storage, read> drawn: array<vec4<f32>>;             // like sources, by the phase functions' full shape
 @group(0) @binding(8) var sky: texture_storage_2d_array<rgba16float, write>;
 
 const TEXELS: u32 = ORDERS_ALTITUDES * ORDERS_VIEWS * ORDERS_SUNS;
@@ -89,7 +90,7 @@ fn solve(channel: u32) {
 }
 
 fn decoded(k: u32, texel: u32, channel: u32) -> vec4<f32> {
-    let coded = sources[(k * TEXELS + texel) * 3u + channel];
+    let coded = drawn[(k * TEXELS + texel) * 3u + channel];
     let mean = coded.x * coded.x * coded.x * coded.x;
     return vec4<f32>(mean, mean * coded.yzw);
 }
@@ -111,7 +112,7 @@ fn sum(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_index) k:
         textureStore(table, vec3<u32>(channel * ORDERS_SUNS + k, y, at.x), orders_encode(all));
     }
     if at.x == 0u {
-        var lit = vec3<f32>(0.0);
+        var lit = irradiance[(PLAN_MAX_ORDERS * ORDERS_ALTITUDES + at.y) * ORDERS_SUNS + k].rgb;
         for (var i = 0u; i < order.y; i++) {
             let root = irradiance[(i * ORDERS_ALTITUDES + at.y) * ORDERS_SUNS + k].rgb;
             let weight = select(share[max(i, 1u) - 1u], vec3<f32>(1.0), i == 0u);

@@ -1,9 +1,10 @@
-// Table of transmittance to the top of the air, by altitude and zenith cosine. Rust side: engine/src/render/pass/air_tables.rs.
+// Tables of transmittance to the top of the air, by altitude and zenith cosine: of all light, and of the beam that the further orders of
+// scattering know. Rust side: engine/src/render/pass/air_tables.rs.
 
 #include "lib/air.wgsl"
 
 @group(0) @binding(0) var<uniform> air: Air;
-@group(0) @binding(1) var table: texture_storage_2d<rgba16float, write>;
+@group(0) @binding(1) var table: texture_storage_2d_array<rgba16float, write>;
 @group(0) @binding(2) var media: texture_2d_array<f32>;
 
 @compute @workgroup_size(8, 8)
@@ -16,6 +17,7 @@ fn bake(@builtin(global_invocation_id) id: vec3<u32>) {
     path.radius = air.shape.x + point.x;
     path.altitude = point.x;
     path.slope = path.radius * point.y;
-    let depth = air_optical_depth(air, media, 0, path, point.z, 8u);
-    textureStore(table, id.xy, vec4<f32>(exp(-depth), 1.0));
+    let depth = air_optical_depths(air, media, 0, path, point.z, 4u);
+    textureStore(table, id.xy, 0, vec4<f32>(exp(-depth[0]), 1.0));
+    textureStore(table, id.xy, 1, vec4<f32>(exp(depth[1] - depth[0]), exp(-depth[1].g)));
 }

@@ -1,7 +1,7 @@
 //! `#[repr(C)]` mirrors of the structs of air in `shaders/`; the rules are those of [`super::gpu_data`].
 
 use super::gpu_data::vec4;
-use crate::air::model::orders::SunMap;
+use crate::air::model::orders::{Aureole, DEGREE, SunMap, forward_share};
 use crate::air::model::spread::{RINGS, SUNS, Spread};
 use crate::air::model::view_space::Spacing;
 use crate::air::model::view_table::{AlphaColour, Split, ViewTable};
@@ -52,7 +52,15 @@ pub struct AirUniform {
     pub orders: [f32; 4],
     pub bands: [[f32; 4]; 6],
     pub rings: [[f32; 4]; 4 * RINGS],
+    pub forward: [f32; 4],
+    pub aureole_g: [f32; 4],
+    pub aureole_scale: [f32; 4],
+    pub aureole: [[f32; 4]; DEGREE + 1],
+    pub spare: [[f32; 4]; 8],
 }
+
+// A graphics card binds one air of the list only where its place is a multiple of this.
+const _: () = assert!(size_of::<AirUniform>().is_multiple_of(256));
 
 /// `Airs` of `shaders/lib/medium.wgsl`.
 #[repr(C)]
@@ -79,7 +87,14 @@ impl AirUniform {
             *slot = narrow(jump);
         }
         let map = SunMap::new(medium);
-        air.orders = [narrow(map.scale), narrow(map.low), narrow(map.inverse), 0.0];
+        air.orders = [map.scale, map.low, map.inverse, map.knee].map(narrow);
+        for (i, class) in classes.list.iter().take(Classes::MAX).enumerate() {
+            let chi = class.legendre(DEGREE + 2);
+            let aureole = Aureole::new(&chi);
+            air.forward[i] = narrow(forward_share(&chi));
+            (air.aureole_g[i], air.aureole_scale[i]) = (narrow(aureole.g), narrow(aureole.scale));
+            air.aureole.iter_mut().zip(aureole.series).for_each(|(row, x)| row[i] = narrow(x));
+        }
         air.bands = [vec4(Vec3::X, 0.0), vec4(Vec3::Y, 1.0), vec4(Vec3::Z, 0.0), [0.0; 4], [0.0; 4], [0.0; 4]];
         if classes.direct {
             medium.layers.iter().take(Classes::MAX).enumerate().for_each(|(i, layer)| air.set(i, layer));

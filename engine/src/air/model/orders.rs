@@ -14,7 +14,7 @@
 //! Where the steps lie, how much light each lets through and the kernels K depend on the medium alone: [`Plan`] computes them here,
 //! in f64, for any layers, profiles and phase functions, once for a medium.
 
-use crate::air::Medium;
+use crate::air::{Classes, Medium};
 use crate::space::relative::narrow;
 use core::f64::consts::PI;
 use glam::DVec3;
@@ -35,6 +35,8 @@ pub const DIRECTIONS: usize = UP + DOWN;
 pub const STEPS: usize = 16;
 /// Degree at which the Legendre series of a phase function ends.
 pub const DEGREE: usize = 8;
+/// Degree at which it ends in what is drawn.
+pub const DRAWN_DEGREE: usize = 16;
 /// Fourier modes in the azimuth.
 pub const MODES: usize = 4;
 /// Rows of four numbers that open a direction.
@@ -45,31 +47,40 @@ pub const STEP_ROWS: usize = 4 + DEGREE;
 pub const PATH_ROWS: usize = HEAD_ROWS + STEPS * STEP_ROWS;
 /// Rows of all directions; the kernels follow.
 pub const KERNELS_AT: usize = ALTITUDES * DIRECTIONS * PATH_ROWS;
+/// Those of the kernels for the next order; those for the table follow.
+pub const DRAWN_AT: usize = KERNELS_AT + ALTITUDES * VIEWS * DIRECTIONS * 3;
 /// Rows of the whole plan.
-pub const ROWS: usize = KERNELS_AT + ALTITUDES * VIEWS * DIRECTIONS * 3;
+pub const ROWS: usize = 2 * DRAWN_AT - KERNELS_AT;
 /// Most orders that are computed one by one.
 pub const MAX_ORDERS: u32 = 8;
 
 /// How the table's coordinate for the sun runs: `x = (asinh(t · scale) + low) · inverse`, `t = 2 sin(e/2)`, e the sun's angle above the
-/// horizon of the altitude. Dense at the terminator, within an angle in which the air's own curvature lets day and night mix.
+/// horizon of the altitude; from the knee upwards evenly in t, one unit of asinh by each knee. Dense at the terminator, within an angle in
+/// which the air's own curvature lets day and night mix; it ends where no air in sight is lit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SunMap {
     /// 1 / that angle, rad⁻¹.
     pub scale: f64,
-    /// asinh at midnight, negated.
+    /// asinh at the deepest night, negated.
     pub low: f64,
-    /// 1 / the range of asinh.
+    /// 1 / the range.
     pub inverse: f64,
+    /// t of the knee.
+    pub knee: f64,
 }
 
 impl SunMap {
     /// For the air of a medium.
     pub fn new(medium: &Medium) -> Self {
         let (sine, cosine) = dip(medium.bottom_radius_m, medium.top_altitude_m);
-        let scale = 1.0 / (0.35 * libm::atan2(sine, cosine)).max(0.01);
-        let low = libm::asinh(core::f64::consts::SQRT_2 * scale);
-        let high = libm::asinh((2.0 * (1.0 + sine)).sqrt() * scale);
-        Self { scale, low, inverse: 1.0 / (low + high) }
+        let dip = libm::atan2(sine, cosine);
+        let scale = 1.0 / (0.35 * dip).max(0.01);
+        let knee = 0.35;
+        // Twice the dip: where the farthest air in sight of the ground sees the sun on its horizon.
+        let night = (2.5 * dip + 0.05).min(0.5 * PI);
+        let low = libm::asinh(2.0 * libm::sin(0.5 * night) * scale);
+        let high = libm::asinh(knee * scale) + (2.0 * (1.0 + sine)).sqrt() / knee - 1.0;
+        Self { scale, low, inverse: 1.0 / (low + high), knee }
     }
 }
 
@@ -83,6 +94,66 @@ fn dip(radius_m: f64, altitude_m: f64) -> (f64, f64) {
 fn altitude_m(medium: &Medium, row: usize) -> f64 {
     let x = row as f64 / (ALTITUDES - 1) as f64;
     medium.top_altitude_m * (x * x).min(1.0 - 1e-6)
+}
+
+/// Of what a phase function of these Legendre coefficients (to degree [`DEGREE`] + 1) scatters, the share that is taken to go straight on:
+/// the series of the rest ends smoothly at [`DEGREE`] [Wiscombe 1977, "The Delta-M Method"].
+pub fn forward_share(chi: &[f64]) -> f64 {
+    chi.get(DEGREE + 1).map_or(0.0, |x| x.clamp(0.0, 1.0))
+}
+
+/// How a class scatters light that its like has turned before, but by so little that it still counts as sunlight: with the coefficients χ_l
+/// to [`DEGREE`], as the further orders reckon with, and beyond with χ_l²/f, as two scatterings make them: there χ_l ∝ gˡ is taken, and
+/// Henyey and Greenstein's lobe of g² has just these [as the second-order term of Nakajima & Tanaka 1988, JQSRT 40].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Aureole {
+    /// g².
+    pub g: f64,
+    /// Factor of the lobe.
+    pub scale: f64,
+    /// Factors of the Legendre polynomials that are added.
+    pub series: [f64; DEGREE + 1],
+}
+
+impl Aureole {
+    /// From Legendre coefficients to degree [`DEGREE`] + 2.
+    pub fn new(chi: &[f64]) -> Self {
+        let forward = forward_share(chi);
+        let ratio = chi.get(DEGREE + 2).map_or(0.0, |x| x / forward.max(1e-9)).clamp(0.5, 0.985);
+        let g = ratio * ratio;
+        let scale = if forward < 1e-3 { 0.0 } else { forward / (0..=DEGREE).fold(1.0, |x, _| x * g) };
+        let mut series = [0.0; DEGREE + 1];
+        let mut lobe = scale;
+        for (l, (slot, chi)) in series.iter_mut().zip(chi).enumerate() {
+            *slot = (2 * l + 1) as f64 / (4.0 * PI) * (chi - lobe);
+            lobe *= g;
+        }
+        Self { g, scale, series }
+    }
+}
+
+/// A layer's coefficients: χ₀ … χ_[`DEGREE`] without the share that goes straight on, that share, and χ₀ … χ_[`DRAWN_DEGREE`] as they are.
+struct Series {
+    chi: [f64; DEGREE + 1],
+    forward: f64,
+    full: [f64; DRAWN_DEGREE + 1],
+}
+
+/// Those of all layers; a layer that scatters nothing has none.
+fn series(medium: &Medium) -> Vec<Series> {
+    let mut out: Vec<Series> = medium.layers.iter().map(|_| Series { chi: [0.0; DEGREE + 1], forward: 0.0, full: [0.0; DRAWN_DEGREE + 1] }).collect();
+    for class in Classes::of(medium).list {
+        let all = class.legendre(DRAWN_DEGREE);
+        let forward = forward_share(&all);
+        for i in class.layers {
+            if let Some(series) = out.get_mut(i) {
+                series.forward = forward;
+                series.chi.iter_mut().zip(&all).for_each(|(x, chi)| *x = chi - forward);
+                series.full.iter_mut().zip(&all).for_each(|(x, chi)| *x = *chi);
+            }
+        }
+    }
+    out
 }
 
 /// What the precomputation of a medium's further orders needs.
@@ -108,18 +179,19 @@ pub(super) struct Direction {
 impl Plan {
     /// For a medium.
     pub fn new(medium: &Medium) -> Self {
-        let chi: Vec<Vec<f64>> = medium.layers.iter().map(|l| l.phase.legendre(DEGREE)).collect();
+        let series = series(medium);
         let mut rows = Vec::with_capacity(ROWS);
-        let mut kernels = Vec::with_capacity(ROWS - KERNELS_AT);
+        let [mut kernels, mut drawn] = [(); 2].map(|()| Vec::with_capacity(DRAWN_AT - KERNELS_AT));
         for row in 0..ALTITUDES {
             let altitude_m = altitude_m(medium, row);
             let directions = directions(medium, altitude_m);
             for (i, direction) in directions.iter().enumerate() {
-                path_rows(medium, &chi, altitude_m, direction, i >= UP, &mut rows);
+                path_rows(medium, &series, altitude_m, direction, i >= UP, &mut rows);
             }
-            kernel_rows(medium, &chi, altitude_m, &directions, &mut kernels);
+            kernel_rows(medium, &series, row, &directions, [&mut kernels, &mut drawn]);
         }
         rows.append(&mut kernels);
+        rows.append(&mut drawn);
         Self { rows, orders: orders(medium) }
     }
 }
@@ -170,7 +242,47 @@ pub(super) fn directions(medium: &Medium, altitude_m: f64) -> Vec<Direction> {
             Direction { cosine, weight: 2.0 * PI * sin * w * 2.0 * x * width }
         })
     };
-    side(UP, horizon, -1.0).chain(side(DOWN, PI - horizon, 1.0)).collect()
+    let mut out: Vec<Direction> = side(UP, horizon, -1.0).chain(side(DOWN, PI - horizon, 1.0)).collect();
+    corrected(&mut out);
+    out
+}
+
+/// Changes weights by as little as makes them exact for polynomials of the cosine to [`DEGREE`], and for the light on level ground.
+fn corrected(directions: &mut [Direction]) {
+    const N: usize = DEGREE + 2;
+    let functions = |cosine: f64| -> [f64; N] {
+        let y = legendre(cosine)[0];
+        core::array::from_fn(|j| if j < N - 1 { y[j] } else { cosine.max(0.0) })
+    };
+    // Normal equations of the least change, relative to the weight, under these conditions.
+    let mut a = [[0.0; N + 1]; N];
+    for direction in directions.iter() {
+        let f = functions(direction.cosine);
+        for (row, x) in a.iter_mut().zip(f) {
+            row.iter_mut().zip(f).for_each(|(sum, y)| *sum += direction.weight * x * y);
+            row[N] -= direction.weight * x;
+        }
+    }
+    a[0][N] += (4.0 * PI).sqrt();
+    a[N - 1][N] += PI;
+    for i in 0..N {
+        let pivot = a[i];
+        for row in a.iter_mut().skip(i + 1) {
+            let factor = row[i] / pivot[i];
+            row.iter_mut().zip(pivot).for_each(|(x, y)| *x -= factor * y);
+        }
+    }
+    let mut change = [0.0; N];
+    for i in (0..N).rev() {
+        let known: f64 = (i + 1..N).map(|j| a[i][j] * change[j]).sum();
+        change[i] = (a[i][N] - known) / a[i][i];
+    }
+    for direction in directions {
+        let by: f64 = functions(direction.cosine).iter().zip(change).map(|(f, x)| f * x).sum();
+        if by.abs() < 0.5 {
+            direction.weight *= 1.0 + by;
+        }
+    }
 }
 
 /// Where a step begins: squares of even parts on both sides of the lowest point, where air is densest.
@@ -185,7 +297,7 @@ fn row3(v: DVec3, w: f64) -> [f32; 4] {
     [v.x, v.y, v.z, w].map(|x| if x.is_finite() { narrow(x) } else { 0.0 })
 }
 
-fn path_rows(medium: &Medium, chi: &[Vec<f64>], from_m: f64, direction: &Direction, hits: bool, rows: &mut Vec<[f32; 4]>) {
+fn path_rows(medium: &Medium, series: &[Series], from_m: f64, direction: &Direction, hits: bool, rows: &mut Vec<[f32; 4]>) {
     let (bottom, top) = (medium.bottom_radius_m, medium.top_altitude_m);
     let (r, q0) = (bottom + from_m, from_m * (2.0 * bottom + from_m));
     let slope = r * direction.cosine;
@@ -211,14 +323,14 @@ fn path_rows(medium: &Medium, chi: &[Vec<f64>], from_m: f64, direction: &Directi
         let mut extinction = DVec3::ZERO;
         let mut scattered = [DVec3::ZERO; DEGREE + 1];
         let mut total = DVec3::ZERO;
-        for (layer, chi) in medium.layers.iter().zip(chi) {
+        for (layer, series) in medium.layers.iter().zip(series) {
             // Two Gauss points.
             let density = 0.5
                 * [0.211_324_865_405, 0.788_675_134_595].map(|x| layer.profile.density(altitude(from + x * length))).iter().sum::<f64>();
             let scattering = layer.scattering_per_m.as_dvec3() * density;
-            extinction += scattering + layer.absorption_per_m.as_dvec3() * density;
+            extinction += scattering * (1.0 - series.forward) + layer.absorption_per_m.as_dvec3() * density;
             total += scattering;
-            scattered.iter_mut().zip(chi).for_each(|(sum, x)| *sum += scattering * *x);
+            scattered.iter_mut().zip(&series.chi).for_each(|(sum, x)| *sum += scattering * *x);
         }
         let depth = extinction * length;
         let kept = depth.to_array().map(|x| libm::exp(-x));
@@ -245,9 +357,9 @@ fn path_rows(medium: &Medium, chi: &[Vec<f64>], from_m: f64, direction: &Directi
 }
 
 /// Normalised associated Legendre functions at a cosine, by order m and degree l: Σ_m over their products is (2l+1)/4π P_l.
-fn legendre(cosine: f64) -> [[f64; DEGREE + 1]; MODES] {
+fn legendre(cosine: f64) -> [[f64; DRAWN_DEGREE + 1]; MODES] {
     let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
-    let mut out = [[0.0; DEGREE + 1]; MODES];
+    let mut out = [[0.0; DRAWN_DEGREE + 1]; MODES];
     let mut diagonal = 1.0 / (4.0 * PI).sqrt();
     for (m, of_mode) in out.iter_mut().enumerate() {
         let order = m as f64;
@@ -266,20 +378,37 @@ fn legendre(cosine: f64) -> [[f64; DEGREE + 1]; MODES] {
     out
 }
 
-fn kernel_rows(medium: &Medium, chi: &[Vec<f64>], altitude_m: f64, directions: &[Direction], rows: &mut Vec<[f32; 4]>) {
-    // The layers' coefficients, mixed by what each scatters here.
-    let mut mix = [DVec3::ZERO; DEGREE + 1];
-    let mut total = DVec3::ZERO;
-    for (layer, chi) in medium.layers.iter().zip(chi) {
-        let scattering = layer.scattering_per_m.as_dvec3() * layer.profile.density(altitude_m);
-        total += scattering;
-        mix.iter_mut().zip(chi).for_each(|(sum, x)| *sum += scattering * *x);
+/// The layers' coefficients, mixed by what each scatters around a row of altitude: as much as interpolation between rows gives this one.
+/// For the next order, and for what is drawn.
+fn mixed(medium: &Medium, series: &[Series], row: usize) -> ([DVec3; DEGREE + 1], [DVec3; DRAWN_DEGREE + 1]) {
+    const PARTS: i32 = 8;
+    let (mut mix, mut full) = ([DVec3::ZERO; DEGREE + 1], [DVec3::ZERO; DRAWN_DEGREE + 1]);
+    let mut total = DVec3::splat(1e-300);
+    for k in -PARTS..=PARTS {
+        let x = (row as f64 + f64::from(k) / f64::from(PARTS)) / (ALTITUDES - 1) as f64;
+        if !(0.0..=1.0).contains(&x) {
+            continue;
+        }
+        // The hat function, by the width in altitude; the row itself always has its say.
+        let weight = f64::from(PARTS - k.abs()) * x + if k == 0 { 1e-9 } else { 0.0 };
+        for (layer, series) in medium.layers.iter().zip(series) {
+            let scattering = layer.scattering_per_m.as_dvec3() * (layer.profile.density(x * x * medium.top_altitude_m) * weight);
+            total += scattering;
+            mix.iter_mut().zip(&series.chi).for_each(|(sum, x)| *sum += scattering * *x);
+            full.iter_mut().zip(&series.full).for_each(|(sum, x)| *sum += scattering * *x);
+        }
     }
-    mix.iter_mut().for_each(|sum| *sum /= total.max(DVec3::splat(1e-300)));
+    (mix.map(|sum| sum / total), full.map(|sum| sum / total))
+}
+
+/// Kernels of an altitude, for the next order and for what is drawn.
+fn kernel_rows(medium: &Medium, series: &[Series], row: usize, directions: &[Direction], rows: [&mut Vec<[f32; 4]>; 2]) {
+    let (mix, full) = mixed(medium, series, row);
     let arriving: Vec<_> = directions.iter().map(|d| legendre(d.cosine)).collect();
+    let [next, drawn] = rows;
     for view in 0..VIEWS {
         let leaving = legendre(2.0 * view as f64 / (VIEWS - 1) as f64 - 1.0);
-        for (direction, arriving) in directions.iter().zip(&arriving) {
+        let kernel = |mix: &[DVec3], direction: &Direction, arriving: &[[f64; DRAWN_DEGREE + 1]; MODES]| {
             let mut modes = [DVec3::ZERO; MODES];
             for (m, sum) in modes.iter_mut().enumerate() {
                 // cos mφ stands for both of ±m.
@@ -288,7 +417,16 @@ fn kernel_rows(medium: &Medium, chi: &[Vec<f64>], altitude_m: f64, directions: &
                     *sum += *mix * (leaving[m][l] * arriving[m][l] * weight);
                 }
             }
-            rows.extend([0, 1, 2].map(|c| modes.map(|sum| if sum[c].is_finite() { narrow(sum[c]) } else { 0.0 })));
+            modes
+        };
+        let both = || directions.iter().zip(&arriving);
+        // To this degree the directions are no exact quadrature: all the light is kept by a factor.
+        let kept: DVec3 = both().map(|(d, a)| kernel(&full, d, a)[0]).sum();
+        let scale = full[0] / kept.max(0.5 * full[0]).max(DVec3::splat(1e-300));
+        for (direction, arriving) in both() {
+            let channels = |modes: [DVec3; MODES]| [0, 1, 2].map(|c| modes.map(|x| if x[c].is_finite() { narrow(x[c]) } else { 0.0 }));
+            next.extend(channels(kernel(&mix, direction, arriving)));
+            drawn.extend(channels(kernel(&full, direction, arriving).map(|x| x * scale)));
         }
     }
 }

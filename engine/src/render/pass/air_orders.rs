@@ -34,6 +34,7 @@ pub struct OrdersBaker {
     sum: wgpu::ComputePipeline,
     gathered: wgpu::Buffer,
     sources: wgpu::Buffer,
+    drawn: wgpu::Buffer,
     irradiance: wgpu::Buffer,
     scalars: wgpu::Buffer,
     table: wgpu::Texture,
@@ -43,7 +44,7 @@ pub struct OrdersBaker {
 pub struct Inputs<'a> {
     /// `Air`.
     pub air: wgpu::BufferBinding<'a>,
-    /// Its transmittance, as an array of one layer.
+    /// Its two transmittances, as an array.
     pub transmittance: &'a wgpu::TextureView,
     /// Bilinear, clamped.
     pub linear: &'a wgpu::Sampler,
@@ -74,6 +75,7 @@ impl OrdersBaker {
             storage(5, false),
             storage(6, false),
             storage(7, false),
+            storage(8, false),
         ]);
         let all = layout(&[
             uniform_entry(3),
@@ -82,6 +84,7 @@ impl OrdersBaker {
             storage(6, false),
             written(7, TextureViewDimension::D3),
             written(8, TextureViewDimension::D2Array),
+            storage(9, true),
         ]);
         let module = shaders.load(&gpu.device, "pass/air_orders.wgsl")?;
         let sum_module = shaders.load(&gpu.device, "pass/air_orders_sum.wgsl")?;
@@ -104,7 +107,8 @@ impl OrdersBaker {
             sum_layout: all,
             gathered: room("air orders: gathered", altitudes * DIRECTIONS as u64 * SUN_ROWS),
             sources: room("air orders: sources", orders * altitudes * VIEWS as u64 * SUN_ROWS),
-            irradiance: room("air orders: irradiance", orders * altitudes * SUNS as u64 * 16),
+            drawn: room("air orders: drawn", orders * altitudes * VIEWS as u64 * SUN_ROWS),
+            irradiance: room("air orders: irradiance", (orders + 1) * altitudes * SUNS as u64 * 16),
             scalars: room("air orders: products", orders * orders * 16),
             table: gpu.device.create_texture(&wgpu::TextureDescriptor {
                 label: Some("air orders"),
@@ -155,6 +159,7 @@ impl OrdersBaker {
                     (5, self.gathered.as_entire_binding()),
                     (6, self.sources.as_entire_binding()),
                     (7, self.irradiance.as_entire_binding()),
+                    (8, self.drawn.as_entire_binding()),
                 ],
             );
             pass.set_bind_group(0, &group, &[]);
@@ -174,6 +179,7 @@ impl OrdersBaker {
                 (6, self.scalars.as_entire_binding()),
                 (7, BindingResource::TextureView(&self.view())),
                 (8, BindingResource::TextureView(inputs.irradiance)),
+                (9, self.drawn.as_entire_binding()),
             ],
         );
         pass.set_bind_group(0, &group, &[]);

@@ -4,7 +4,7 @@
 //! An air that is drawn in bands ([`crate::air::spectral`]) takes three slots: its own, whose tables everyone asks, and one for each
 //! band medium, by which its light along a ray is found.
 //!
-//! A slot (a layer of texture arrays, a block of the table of further orders) belongs to a body's id; the slot longest unused is given away when all are taken.
+//! A slot (a layer of texture arrays, two of transmittance, a block of the table of further orders) belongs to a body's id; the slot longest unused is given away when all are taken.
 //! What the tables mean and how to ask them is in `shaders/lib/air.wgsl`; bodies without air have no slot and ask nothing.
 
 use super::air_bands::{BandMixer, Tables};
@@ -86,7 +86,7 @@ impl AirBaker {
             ty: wgpu::BindingType::StorageTexture {
                 access: wgpu::StorageTextureAccess::WriteOnly,
                 format: HDR,
-                view_dimension: TextureViewDimension::D2,
+                view_dimension: TextureViewDimension::D2Array,
             },
             count: None,
         };
@@ -98,7 +98,7 @@ impl AirBaker {
         let pipeline = compute_pipeline(gpu, "air_transmittance", &module, &[&layout], "bake");
         let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::STORAGE_BINDING | TextureUsages::COPY_SRC;
         let [w, h] = TRANSMITTANCE_SIZE;
-        let transmittance = Texture::with(&gpu.device, "air transmittance", [w, h, MAX_AIRS as u32], 1, HDR, usage);
+        let transmittance = Texture::with(&gpu.device, "air transmittance", [w, h, 2 * MAX_AIRS as u32], 1, HDR, usage);
         let irradiance = OrdersBaker::irradiance_tables(gpu);
         let orders = OrdersBaker::new(gpu, shaders)?;
         let mixer = BandMixer::new(gpu, shaders)?;
@@ -269,20 +269,17 @@ impl AirBaker {
 
     fn bake_slot(&self, gpu: &Gpu, pass: &mut wgpu::ComputePass<'_>, slot: u32) {
         let Some(held) = self.slots.get(slot as usize).filter(|s| s.part != Part::Bare) else { return };
-        let layer = |table, dimension| layer_of(table, slot, dimension);
+        let transmittance = layers_of(&self.transmittance, 2 * slot, 2, TextureViewDimension::D2Array);
         let air = self.air_in(slot);
         let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("air transmittance"),
             layout: &self.layout,
             entries: &[
                 wgpu::BindGroupEntry { binding: 0, resource: BindingResource::Buffer(air.clone()) },
-                wgpu::BindGroupEntry {
-                    binding: 1,
-                    resource: BindingResource::TextureView(&layer(&self.transmittance, TextureViewDimension::D2)),
-                },
+                wgpu::BindGroupEntry { binding: 1, resource: BindingResource::TextureView(&transmittance) },
                 wgpu::BindGroupEntry {
                     binding: 2,
-                    resource: BindingResource::TextureView(&layer(&self.media, TextureViewDimension::D2Array)),
+                    resource: BindingResource::TextureView(&layers_of(&self.media, slot, 1, TextureViewDimension::D2Array)),
                 },
             ],
         });
@@ -292,7 +289,7 @@ impl AirBaker {
         pass.dispatch_workgroups(w.div_ceil(8), h.div_ceil(8), 1);
         let inputs = Inputs {
             air,
-            transmittance: &layer(&self.transmittance, TextureViewDimension::D2Array),
+            transmittance: &transmittance,
             linear: &self.linear,
             irradiance: &self.values.irradiance,
             slot,
@@ -303,12 +300,13 @@ impl AirBaker {
     /// Mixes the tables of an air that is drawn in bands from theirs.
     fn mix_slot(&self, gpu: &Gpu, pass: &mut wgpu::ComputePass<'_>, slot: u32) {
         let Some(InBands { slots: [one, other], .. }) = self.slots.get(slot as usize).and_then(|s| s.bands) else { return };
-        let read = |table, slot| layer_of(table, slot, TextureViewDimension::D2Array);
+        let read = |table, layer| layers_of(table, layer, 1, TextureViewDimension::D2Array);
+        let written = |table, layer| layers_of(table, layer, 1, TextureViewDimension::D2);
         let tables = Tables {
-            own: [&self.transmittance, &self.irradiance].map(|table| layer_of(table, slot, TextureViewDimension::D2)),
+            own: [written(&self.transmittance, 2 * slot), written(&self.irradiance, slot)],
             bands: [
-                read(&self.transmittance, one),
-                read(&self.transmittance, other),
+                read(&self.transmittance, 2 * one),
+                read(&self.transmittance, 2 * other),
                 read(&self.irradiance, one),
                 read(&self.irradiance, other),
             ],
@@ -343,12 +341,12 @@ const fn is_bare(body: &Body, air: &Air) -> bool {
     matches!(body.surface, Surface::Nothing) && matches!(air.model, Model::Thickness(_) | Model::Gradient(_) | Model::LimbTable(_))
 }
 
-/// One layer of a table.
-fn layer_of(table: &Texture, slot: u32, dimension: TextureViewDimension) -> wgpu::TextureView {
+/// Some layers of a table.
+fn layers_of(table: &Texture, from: u32, count: u32, dimension: TextureViewDimension) -> wgpu::TextureView {
     table.texture.create_view(&wgpu::TextureViewDescriptor {
         dimension: Some(dimension),
-        base_array_layer: slot,
-        array_layer_count: Some(1),
+        base_array_layer: from,
+        array_layer_count: Some(count),
         ..Default::default()
     })
 }
