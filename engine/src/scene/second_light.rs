@@ -106,5 +106,5 @@ pub fn skip(scene: &Snapshot) -> Option<String> {
     if all.is_empty() {
         return Some(format!("no world throws as much as {LEAST_LX} lx on what is drawn of another"));
     }
-    all.iter().all(|l| l.share <= 0.0).then(|| "the star is above the horizon, or less than 3° below it".to_owned())
+    all.iter().all(|l| l.share <= 0.0).then(|| "the camera is by day, or in early dusk, on every world that another lights".to_owned())
 }

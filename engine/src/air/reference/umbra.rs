@@ -69,7 +69,7 @@ pub fn trace(air: &Air, distance_m: f64, angle_rad: f64, steps: u32) -> Option<T
         p / r * ((index(r - bottom + step) - index(r - bottom - step)) / (2.0 * step))
     };
     let mut depths = vec![DVec3::ZERO; media.len()];
-    let length = 2.0 * (top * top - miss.min(top).powi(2)).max(1.0).sqrt();
+    let length = 2.0 * ((top - miss) * (top + miss)).max(1.0).sqrt();
     let step = length / f64::from(steps);
     for _ in 0..8 * steps {
         let rate = |p: DVec2, m: DVec2| (m / index(p.length() - bottom), gradient(p));
@@ -110,7 +110,7 @@ pub fn light(air: &Air, receiver: &Receiver, grid: &Grid) -> DVec3 {
     let reach = {
         // At the given angle from the direction to the planet's centre, and at the star's distance from that centre.
         let (sin, cos) = libm::sincos(receiver.separation_rad);
-        let away = d * cos + (receiver.star_distance_m.powi(2) - (d * sin).powi(2)).sqrt();
+        let away = d * cos + ((receiver.star_distance_m - d * sin) * (receiver.star_distance_m + d * sin)).sqrt();
         DVec3::new(away * cos - d, away * sin, 0.0)
     };
     let sun_rad = libm::asin(receiver.star_radius_m / (reach + DVec3::X * d).length());

@@ -97,7 +97,7 @@ impl Shade {
         let v = self.row_of(distance_m);
         let (low, part) = (v as usize, v.fract());
         let root = root_in(&rows(low), gap_rad) * (1.0 - part) + root_in(&rows(low + 1), gap_rad) * part;
-        root.powf(4.0)
+        root * root * root * root
     }
 }
 
