@@ -4,9 +4,9 @@
 #include "lib/color.wgsl"
 
 struct Meter {
-    range: vec4<f32>,  // log2 of the luminance of the first bin, bins per stop, compensation in stops, 0
+    range: vec4<f32>,  // log2 of the luminance of the first bin, bins per stop, compensation in stops; stops that highlights may stand above the middle
     trim: vec4<f32>,   // share left out below, share up to which is counted, adaptation to light and to dark, 1/s
-    limit: vec4<f32>,  // lowest and highest EV at ISO 100; EV below which the star in view dazzles, 0
+    limit: vec4<f32>,  // lowest and highest EV at ISO 100; EV below which the star in view dazzles; share that is no highlight
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;
@@ -15,6 +15,9 @@ struct Meter {
 @group(1) @binding(1) var<storage, read_write> histogram: array<atomic<u32>, 256>;
 @group(1) @binding(2) var<storage, read_write> next: Exposure;
 @group(1) @binding(3) var<uniform> meter: Meter;
+
+// Twin of the constant in engine::light::exposure.
+const BRIGHT_HALF_EV: f32 = 0.6;
 
 var<workgroup> local_bins: array<atomic<u32>, 256>;
 
@@ -51,21 +54,25 @@ fn settle() {
     for (var i = 1u; i < 256u; i++) {
         total += f32(atomicLoad(&histogram[i]));
     }
-    // Mean of log luminance between two percentiles.
+    // Mean of log luminance between two percentiles, and what only the brightest pixels exceed.
     var before = 0.0;
     var sum = 0.0;
     var weight = 0.0;
+    var bright = meter.range.x;
     for (var i = 1u; i < 256u; i++) {
         let after = before + f32(atomicLoad(&histogram[i]));
         let inside = max(min(after, total * meter.trim.y) - max(before, total * meter.trim.x), 0.0);
-        sum += inside * ((f32(i) - 0.5) / meter.range.y + meter.range.x);
+        let log2_luminance = (f32(i) - 0.5) / meter.range.y + meter.range.x;
+        sum += inside * log2_luminance;
         weight += inside;
+        bright = select(bright, log2_luminance, before < total * meter.limit.w);
         before = after;
     }
     // EV100 = log2(L · 100 / 12.5); a picture with nothing in it is exposed for the darkest.
     var ev = meter.limit.x;
     if weight > 0.0 {
-        ev = clamp(sum / weight + 3.0 + dimness_ev(exp2(sum / weight)), meter.limit.x, meter.limit.y);
+        let middle = max(sum / weight - BRIGHT_HALF_EV, bright - meter.range.w);
+        ev = clamp(middle + 3.0 + dimness_ev(exp2(sum / weight)), meter.limit.x, meter.limit.y);
     }
     ev = max(ev, meter.limit.z);
     if exposure.settled > 0.5 && frame.forward.w >= 0.0 {

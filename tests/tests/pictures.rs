@@ -22,6 +22,8 @@ const SIZE: (u32, u32) = (96, 54);
 const NOON: f64 = 2_461_263.0;
 const SUNSET: f64 = 2_461_263.299_5;
 const NIGHT: f64 = 2_461_263.45;
+/// On Mars, at 18.4° N, 77.5° E.
+const MARS_SUNSET: f64 = 2_461_264.992;
 /// Totality west of Iceland (at 65.2° N, 25.2° W it is greatest), and an hour before.
 const TOTALITY: f64 = 2_461_265.241_1;
 const BEFORE: f64 = TOTALITY - 1.0 / 24.0;
@@ -218,6 +220,18 @@ fn sunset_is_red_and_night_is_dark() {
             stage.at(jd, &format!("at:earth,42.36,-3.62,{height_m},sun,-30,55"));
         }
     }
+}
+
+#[test]
+fn the_sun_of_mars_sets_in_a_blue_glow_in_a_brown_sky() {
+    // The sun stands 3° high; the glow is 2° beside it, the sky 50°. A pixel is half a degree.
+    let mut stage = stage();
+    let glow = stage.at(MARS_SUNSET, "at:mars,18.4,77.5,2,sun+15,8,27");
+    let beyond = stage.at(MARS_SUNSET, "at:mars,18.4,77.5,2,sun+60,20,27");
+    let ratio = |taken: &Taken, x: usize, y: usize| taken.rgb(x, y)[2] / taken.rgb(x, y)[0];
+    let [near, aside, far] = [ratio(&glow, 14, 37), ratio(&glow, 48, 30), ratio(&beyond, 48, 27)];
+    println!("blue over red: {near:.2} beside the sun, {aside:.2} at 15°, {far:.2} far from it");
+    assert!(near > 1.2 && aside < 0.9 && far < 0.6 && near > 3.0 * far, "{near} {aside} {far}");
 }
 
 #[test]

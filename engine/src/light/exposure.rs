@@ -12,6 +12,11 @@ pub const LOG2_MIN: f32 = -20.0;
 pub const LOG2_MAX: f32 = 32.0;
 /// The meter averages log-luminance between these fractions of the counted pixels: black space and the sun's glint do not vote.
 pub const METER_RANGE: [f32; 2] = [0.5, 0.95];
+/// Stops by which the luminance so metered, that of the brighter half, stands above the middle of what one looks at.
+pub const BRIGHT_HALF_EV: f32 = 0.6;
+/// Share of the counted pixels, and stops above middle grey that the luminance which this share does not exceed may stand at most: the glow about
+/// a low sun keeps its colour, and the rest is darker for it, as a photographer would have it.
+pub const HIGHLIGHT: [f32; 2] = [0.985, 1.8];
 /// Rates of adaptation to brighter and to darker light, 1/s.
 pub const ADAPT_PER_S: [f32; 2] = [3.0, 1.5];
 /// EV100 that a meter which sees nothing gives: a starry night.
@@ -47,17 +52,18 @@ pub fn ev100_of_histogram(bins: &[u32]) -> f32 {
     let lit = || bins.iter().copied().enumerate().take(BINS).skip(1);
     let total: f32 = lit().map(|(_, n)| n as f32).sum();
     let (low, high) = (total * METER_RANGE[0], total * METER_RANGE[1]);
-    let (mut before, mut weight, mut sum) = (0.0_f32, 0.0_f32, 0.0_f32);
+    let (mut before, mut weight, mut sum, mut bright) = (0.0_f32, 0.0_f32, 0.0_f32, LOG2_MIN);
     for (i, n) in lit() {
         let after = before + n as f32;
         let inside = (after.min(high) - before.max(low)).max(0.0);
         let log2 = LOG2_MIN + (i as f32 - 0.5) / (BINS - 1) as f32 * (LOG2_MAX - LOG2_MIN);
         sum += inside * log2;
         weight += inside;
+        bright = if before < total * HIGHLIGHT[0] { log2 } else { bright };
         before = after;
     }
-    let luminance = (sum / weight).exp2();
-    if weight > 0.0 { ev100_of_luminance(luminance) + dimness_ev(luminance) } else { EV100_DARK }
+    let middle = (sum / weight - BRIGHT_HALF_EV).max(bright - HIGHLIGHT[1]);
+    if weight > 0.0 { ev100_of_luminance(middle.exp2()) + dimness_ev((sum / weight).exp2()) } else { EV100_DARK }
 }
 
 /// EV100 after `dt_s` seconds of adaptation from `now` towards `goal`: exponential, quicker to bright light than to dark.
@@ -83,7 +89,13 @@ mod tests {
             let mut bins = vec![0; BINS];
             bins[bin_of_luminance(luminance)] = 1000;
             bins[0] = 1_000_000; // black sky does not vote
-            let wanted = ev100_of_luminance(luminance) + dimness_ev(luminance);
+            let wanted = ev100_of_luminance(luminance) - BRIGHT_HALF_EV + dimness_ev(luminance);
+            assert!((ev100_of_histogram(&bins) - wanted).abs() < 0.11, "{luminance}");
+            // A glow over three hundredths of the picture, six stops brighter, is held; over one hundredth it is not.
+            bins[bin_of_luminance(64.0 * luminance)] = 30;
+            let held = ev100_of_luminance(64.0 * luminance) - HIGHLIGHT[1] + dimness_ev(luminance);
+            assert!((ev100_of_histogram(&bins) - held).abs() < 0.2, "{luminance}");
+            bins[bin_of_luminance(64.0 * luminance)] = 10;
             assert!((ev100_of_histogram(&bins) - wanted).abs() < 0.11, "{luminance}");
         }
         assert_eq!(ev100_of_histogram(&[0; BINS]), EV100_DARK);

@@ -197,12 +197,12 @@ impl MeterUniform {
     /// The light meter of [`crate::light::exposure`], between EV −6 (a starry night) and EV 20. A star in
     /// view that sends `glare_lx` to the eye lets it see no less than a veil of 5e-4 of that per steradian.
     pub fn new(compensation_ev: f32, glare_lx: f32) -> Self {
-        use crate::light::exposure::{ADAPT_PER_S, BINS, EV100_DARK, LOG2_MAX, LOG2_MIN, METER_RANGE};
+        use crate::light::exposure::{ADAPT_PER_S, BINS, EV100_DARK, HIGHLIGHT, LOG2_MAX, LOG2_MIN, METER_RANGE};
         let per_stop = (BINS - 1) as f32 / (LOG2_MAX - LOG2_MIN);
         Self {
-            range: [LOG2_MIN, per_stop, compensation_ev, 0.0],
+            range: [LOG2_MIN, per_stop, compensation_ev, HIGHLIGHT[1]],
             trim: [METER_RANGE[0], METER_RANGE[1], ADAPT_PER_S[0], ADAPT_PER_S[1]],
-            limit: [EV100_DARK, 20.0, (8.0 * 5e-4 * glare_lx).max(1e-6).log2().max(EV100_DARK), 0.0],
+            limit: [EV100_DARK, 20.0, (8.0 * 5e-4 * glare_lx).max(1e-6).log2().max(EV100_DARK), HIGHLIGHT[0]],
         }
     }
 }
