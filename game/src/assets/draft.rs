@@ -18,6 +18,10 @@ use serde_json::{Map, Value, json};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+mod begin;
+
+pub use begin::{LAYERS, Place, bank, fill, first, first_air, layer, ways};
+
 /// Steps that can be undone.
 const STEPS: usize = 200;
 /// What stands at the head of a new file.
@@ -206,48 +210,6 @@ fn read(files: &[PathBuf]) -> Result<Value, AssetErrors> {
     let tree = tree.map_or_else(|| json!({}), |t| t.json());
     AssetErrors { faults }.or(tree)
 }
-
-/// What an air begins with that a body is given: a thin one of air and haze, whose numbers are Earth's.
-pub fn first_air(radius_m: f64) -> Value {
-    json!({
-        "model": "physical",
-        "top_altitude_m": (radius_m * 0.1).clamp(1e3, 1e5).round(),
-        "ground_albedo": [0.1, 0.1, 0.1],
-        "layers": [layer("gas"), layer("haze")],
-    })
-}
-
-/// A layer to begin with, of a name in [`LAYERS`].
-pub fn layer(kind: &str) -> Value {
-    let (scattering, absorption, profile, phase) = match kind {
-        "gas" => (
-            [5.8e-6, 13.56e-6, 33.1e-6],
-            [0.0; 3],
-            json!({ "kind": "exponential", "scale_height_m": 8000.0 }),
-            json!({ "kind": "rayleigh" }),
-        ),
-        "absorber" => {
-            let tent = json!({ "kind": "tent", "bottom_m": 10_000.0, "peak_m": 25_000.0, "top_m": 40_000.0 });
-            ([0.0; 3], [1.6e-6, 1.8e-6, 1.2e-7], tent, json!({ "kind": "isotropic" }))
-        }
-        "fog" => (
-            [1e-3; 3],
-            [0.0; 3],
-            json!({ "kind": "constant", "bottom_m": 0.0, "top_m": 300.0 }),
-            json!({ "kind": "henyey_greenstein", "g": 0.8 }),
-        ),
-        _ => (
-            [4e-6; 3],
-            [4.4e-7; 3],
-            json!({ "kind": "exponential", "scale_height_m": 1200.0 }),
-            json!({ "kind": "cornette_shanks", "g": 0.8 }),
-        ),
-    };
-    json!({ "name": kind, "scattering_per_m": scattering, "absorption_per_m": absorption, "profile": profile, "phase": phase })
-}
-
-/// Layers that can be added.
-pub const LAYERS: [&str; 4] = ["gas", "haze", "absorber", "fog"];
 
 #[cfg(test)]
 mod tests {

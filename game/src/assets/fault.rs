@@ -8,6 +8,11 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+/// Characters of a line that an excerpt shows: what a panel of the HUD has room for.
+const EXCERPT: usize = 90;
+/// Faults that a screen shows in full.
+const ON_SCREEN: usize = 4;
+
 /// A text file that was read.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Source {
@@ -123,14 +128,26 @@ impl Fault {
             // Never longer than the rest of the line: a table's span covers many.
             let room = line.chars().count().saturating_sub(column - 1).max(1);
             let span = at.source.text.get(at.start..at.end).map_or(1, |s| s.lines().next().unwrap_or("").chars().count());
-            let caret = "^".repeat(span.clamp(1, room));
-            out += &format!("\n{number:>width$} | {line}\n{:>width$} | {:>pad$}{caret}", "", "", pad = column - 1);
+            let (line, before) = around(line, column - 1);
+            let caret = "^".repeat(span.clamp(1, room).min(EXCERPT.saturating_sub(before).max(1)));
+            out += &format!("\n{number:>width$} | {line}\n{:>width$} | {:>before$}{caret}", "", "");
         }
         if let Some(help) = &self.help {
             out += &format!("\n    = help: {help}");
         }
         out
     }
+}
+
+/// At most [`EXCERPT`] characters of a line, among them that at `column` from 0; and how many of them stand before it.
+fn around(line: &str, column: usize) -> (String, usize) {
+    let characters = line.chars().count();
+    if characters <= EXCERPT {
+        return (line.to_owned(), column);
+    }
+    let first = column.saturating_sub(EXCERPT / 3).min(characters - EXCERPT);
+    let cut = |at: usize, c: char| if (at == 0 && first > 0) || (at + 1 == EXCERPT && first + EXCERPT < characters) { '…' } else { c };
+    (line.chars().skip(first).take(EXCERPT).enumerate().map(|(at, c)| cut(at, c)).collect(), column - first)
 }
 
 impl std::error::Error for Fault {}
@@ -186,10 +203,19 @@ impl AssetErrors {
         step.map_err(|e| self.faults.extend(e.faults)).ok()
     }
 
-    /// One line for each, without excerpts: for a message on the screen.
+    /// One line for each, without excerpts.
     pub fn lines(&self) -> String {
         let line = |f: &Fault| f.help.as_ref().map_or_else(|| f.to_string(), |help| format!("{f} ({help})"));
         self.faults.iter().map(line).collect::<Vec<_>>().join("\n")
+    }
+
+    /// For a message on the screen: as many in full as it has room for, and how to see the others.
+    pub fn on_screen(&self) -> String {
+        let mut all: Vec<String> = self.faults.iter().take(ON_SCREEN).map(Fault::text).collect();
+        if let Some(more) = self.faults.get(ON_SCREEN..).filter(|more| !more.is_empty()) {
+            all.push(format!("and {} more: `syzygy check-assets` tells all", more.len()));
+        }
+        all.join("\n")
     }
 
     /// All of them in full, and their number.

@@ -61,6 +61,15 @@ pub struct Variant {
     pub doc: &'static str,
 }
 
+/// Ways to fill a table: one of several sets of keys has to be there, and none of the keys that belong to the other ways alone.
+#[derive(Debug)]
+pub struct Ways {
+    /// The keys by which one way is told from another.
+    pub apart: &'static [&'static str],
+    /// What each way needs.
+    pub each: &'static [&'static [&'static str]],
+}
+
 /// A range of numbers, and how a slider runs through it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Span {
@@ -94,6 +103,16 @@ pub const fn may(key: &'static str, kind: Kind, doc: &'static str) -> Field {
     Field { key, must: false, kind, doc }
 }
 
+/// The field of a key.
+pub fn find<'a>(fields: &'a [Field], key: &str) -> Option<&'a Field> {
+    fields.iter().find(|f| f.key == key)
+}
+
+/// Asks for keys that these fields leave to the reader to demand; what is missing is written down with what it should be.
+pub fn demand(r: &Reader<'_>, fields: &'static [Field], keys: &[&'static str]) {
+    keys.iter().filter(|key| !r.has(key)).filter_map(|key| find(fields, key)).for_each(|field| value(r, field));
+}
+
 /// Checks a table against its fields; everything that is wrong is written down.
 pub fn check(r: Reader<'_>, fields: &'static [Field]) {
     for field in fields {
@@ -103,11 +122,14 @@ pub fn check(r: Reader<'_>, fields: &'static [Field]) {
 }
 
 fn read(r: &Reader<'_>, field: &'static Field) {
-    let key = field.key;
-    let there = r.has(key);
-    if !there && !field.must {
-        return;
+    if r.has(field.key) || field.must {
+        value(r, field);
     }
+}
+
+/// A value that is there, or must be.
+fn value(r: &Reader<'_>, field: &'static Field) {
+    let key = field.key;
     match &field.kind {
         Kind::Number(span) => drop(r.number(key, span.min..=span.max)),
         Kind::Whole(span) => drop(r.whole_in(key, span.min..=span.max)),
@@ -135,7 +157,10 @@ fn read(r: &Reader<'_>, field: &'static Field) {
                 _ => {}
             }
         }
-        Kind::Tables(fields) => r.tables(key).into_iter().for_each(|inside| check(inside, fields)),
+        Kind::Tables(fields) => {
+            r.needed(key, &format!("a list of tables [[{key}]], or `{key} = []` for none"));
+            r.tables(key).into_iter().for_each(|inside| check(inside, fields));
+        }
         Kind::Shares(names) => {
             let Some(inside) = r.table(key) else { return };
             for name in *names {

@@ -2,8 +2,8 @@
 //!
 //! Not here: what the bodies' own files say ([`super::body`], [`super::atmosphere`]), and the system that they make ([`super::system`]).
 
-use super::fault::{At, Fault, nearest};
-use super::overlay::Overlay;
+use super::fault::{At, Fault, Severity, nearest};
+use super::overlay::{OF_BODY, OF_SYSTEM, Overlay};
 use super::reader::{Faults, POSITIVE, Reader};
 use super::system::{digest, read_tree};
 use super::tree::{Data, Node};
@@ -85,8 +85,37 @@ pub fn lists(overlay: &Overlay, system: &str, body: &str) -> bool {
     list.iter().any(|item| item.text() == Some(body))
 }
 
-/// Patches of what is not there, also in folders that no system lists.
+/// Files of mods that nobody reads: a misspelt name would else be a mod that does nothing.
+fn tell_strays(overlay: &Overlay, faults: &Faults) {
+    for (path, relative) in overlay.strays() {
+        let parts: Vec<&str> = relative.iter().filter_map(|part| part.to_str()).collect();
+        let help = match parts.as_slice() {
+            ["bodies", _, file] => nearest(file, OF_BODY),
+            ["systems", _, file] => nearest(file, OF_SYSTEM),
+            ["ships" | "starts", ..] => Some("expected one file for each, without a patch".to_owned()),
+            [folder, ..] if parts.len() > 1 => nearest(folder, ["bodies", "systems", "ships", "starts"]),
+            _ => Some("a mod has the folders of the assets: bodies/<body>/, systems/<system>/, ships/, starts/".to_owned()),
+        };
+        let warning = Fault { severity: Severity::Warning, ..Fault::file(&path, "nothing reads a file of this name in this place") };
+        faults.borrow_mut().push(warning.help(help));
+    }
+}
+
+/// A file of a mod that replaces one and lacks keys was perhaps meant to change only some: told with the faults from `first` on.
+pub fn tell_replaced(overlay: &Overlay, relative: &str, first: usize, faults: &Faults) {
+    let Some(path) = overlay.find(relative) else { return };
+    let below = overlay.roots().iter().map(|r| r.join(relative)).find(|p| p.is_file() && *p != path);
+    let (Some(below), Some(stem)) = (below, relative.strip_suffix(".toml").and_then(|s| s.rsplit('/').next())) else { return };
+    let missing = |f: &&mut Fault| f.path == path && f.help.is_none() && f.message.starts_with("missing key");
+    if let Some(fault) = faults.borrow_mut().iter_mut().skip(first).find(missing) {
+        let below = below.display();
+        fault.help = Some(format!("this file replaces all of {below}; what changes only some of its keys is called `{stem}.patch.toml`"));
+    }
+}
+
+/// Patches of what is not there, also in folders that no system lists, and files that nobody reads.
 pub fn tell_orphans(overlay: &Overlay, faults: &Faults) {
+    tell_strays(overlay, faults);
     let known = bodies(overlay);
     for body in overlay.names("bodies", None) {
         for file in ["body.toml", "atmosphere.toml"] {

@@ -200,6 +200,8 @@ impl Assets {
         for system in &systems {
             warnings.extend(errors.keep(self.system(system, &|_, _| ())).into_iter().flat_map(|s| s.warnings.clone()));
         }
+        once(&mut warnings);
+        once(&mut errors.faults);
         errors.or((systems, warnings))
     }
 
@@ -239,7 +241,18 @@ impl Assets {
                 errors.keep(self.world(&key, &start, system, ship));
             }
         }
+        once(&mut warnings);
+        once(&mut errors.faults);
         errors.or(warnings)
+    }
+}
+
+/// What several systems have in common is told once.
+fn once<T: PartialEq>(told: &mut Vec<T>) {
+    let mut i = 0;
+    while i < told.len() {
+        let (before, rest) = told.split_at(i);
+        if rest.first().is_some_and(|this| before.contains(this)) { drop(told.remove(i)) } else { i += 1 }
     }
 }
 

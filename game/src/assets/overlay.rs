@@ -13,6 +13,24 @@ pub const TEXT_MAX: u64 = 1 << 20;
 /// Largest map or picture, bytes.
 pub const DATA_MAX: u64 = 1 << 28;
 
+/// Folders inside each other in which a mod's files are looked for.
+const DEEPEST: usize = 6;
+/// Files of a body.
+pub const OF_BODY: [&str; 4] = ["body.toml", "body.patch.toml", "atmosphere.toml", "atmosphere.patch.toml"];
+/// Files of a system.
+pub const OF_SYSTEM: [&str; 2] = ["system.toml", "system.patch.toml"];
+
+/// Whether a loader reads a TOML file at this relative path.
+fn is_read(relative: &Path) -> bool {
+    let parts: Vec<&str> = relative.iter().filter_map(|part| part.to_str()).collect();
+    match parts.as_slice() {
+        ["bodies", _, file] => OF_BODY.contains(file),
+        ["systems", _, file] => OF_SYSTEM.contains(file),
+        ["ships" | "starts", file] => !file.ends_with(".patch.toml"),
+        _ => false,
+    }
+}
+
 /// Roots in order: the assets, then the mods.
 #[derive(Clone, Debug)]
 pub struct Overlay {
@@ -57,6 +75,27 @@ impl Overlay {
         let Some(stem) = relative.strip_suffix(".toml") else { return Vec::new() };
         let base = self.roots.iter().position(|r| r.join(relative).is_file()).unwrap_or(self.roots.len());
         self.roots[..base].iter().map(|r| r.join(format!("{stem}.patch.toml"))).filter(|p| p.is_file()).collect()
+    }
+
+    /// Files in the mods that no loader reads, by their relative paths: TOML under another name or in another folder than the assets have.
+    pub fn strays(&self) -> Vec<(PathBuf, PathBuf)> {
+        let mut found = Vec::new();
+        for root in self.roots.iter().skip(1) {
+            let mut open = vec![PathBuf::new()];
+            while let Some(folder) = open.pop() {
+                for entry in fs::read_dir(root.join(&folder)).into_iter().flatten().flatten() {
+                    let (path, relative) = (entry.path(), folder.join(entry.file_name()));
+                    let hidden = entry.file_name().to_string_lossy().starts_with('.');
+                    if path.is_dir() && !hidden && relative.components().count() < DEEPEST {
+                        open.push(relative);
+                    } else if path.is_file() && !hidden && path.extension().is_some_and(|e| e == "toml") && !is_read(&relative) {
+                        found.push((path, relative));
+                    }
+                }
+            }
+        }
+        found.sort();
+        found
     }
 
     /// Names in a folder over all roots, sorted: of folders, or of files with an ending (without it; patches left out).
@@ -113,5 +152,11 @@ pub fn read_text(path: &Path) -> Result<Arc<Source>, Fault> {
         Fault::file(path, format!("line {line}: byte {offset} is not UTF-8: expected a UTF-8 text file"))
             .help(Some("save the file as UTF-8 in your editor".to_owned()))
     })?;
+    let lone = text.match_indices('\r').map(|(i, _)| i).find(|i| text.as_bytes().get(i + 1) != Some(&b'\n'));
+    if let Some(at) = lone {
+        let line = text[..at].matches('\n').count() + 1;
+        return Err(Fault::file(path, format!("line {line}: it ends in a carriage return alone: expected line ends LF or CR LF"))
+            .help(Some("choose the line ends of Unix or Windows in your editor".to_owned())));
+    }
     Ok(Arc::new(Source { path: path.to_owned(), text }))
 }

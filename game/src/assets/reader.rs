@@ -270,7 +270,12 @@ impl<'a> Reader<'a> {
                 out
             }
             Some(node) => {
-                self.mismatch(key, node, "a list of tables");
+                let found = node.data.kind();
+                let fault = Fault::at(&node.at, format!("`{}`: expected a list of tables, found {found}", self.full(key)));
+                let help = matches!(node.data, Data::Table(_)).then(|| {
+                    format!("each one begins with [[{0}]]; [{0}.NAME] changes one of that name, in a file *.patch.toml", self.full(key))
+                });
+                self.fault(fault.help(help));
                 Vec::new()
             }
         }

@@ -2,23 +2,27 @@
 //! nothing else: whoever asks keeps the last good system.
 //!
 //! Editors save in many ways: over the file, beside it and then renamed, in several writes. All count as one change once files have been
-//! still for [`QUIET`]; what editors leave beside the files (backups, swap files) counts as none.
+//! still for [`QUIET`], and a file that was emptied waits for what is written into it. What editors leave beside the files (backups, swap
+//! files) counts as none.
 
 use super::{AssetErrors, Assets};
 use crate::world::system::System;
 use notify_debouncer_full::notify::event::{CreateKind, RemoveKind};
 use notify_debouncer_full::notify::{EventKind, RecommendedWatcher, RecursiveMode};
 use notify_debouncer_full::{DebounceEventResult, DebouncedEvent, Debouncer, RecommendedCache, new_debouncer};
-use std::path::Path;
+use std::cell::RefCell;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, channel};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// How long files must be still before they are read: longer than the pause between two writes of one save, and short against the 0.3 s
 /// in which a sky is to follow its file.
 pub const QUIET: Duration = Duration::from_millis(60);
 /// How often that is looked at.
 const LOOK: Duration = Duration::from_millis(10);
+/// How long a file without a byte is taken for one that is still being written.
+const EMPTY: Duration = Duration::from_millis(400);
 /// Endings of what assets are made of.
 const ENDINGS: [&str; 5] = ["toml", "cube", "png", "jpg", "jpeg"];
 
@@ -31,11 +35,19 @@ pub enum Change {
     All,
 }
 
+/// A change that waits for files that were emptied and are not written yet.
+#[derive(Default)]
+struct Held {
+    change: Option<Change>,
+    empty: Vec<(PathBuf, Instant)>,
+}
+
 /// Watches one system.
 pub struct Reloader {
     assets: Assets,
     key: String,
     changes: Receiver<DebounceEventResult>,
+    held: RefCell<Held>,
     // Dropping it ends the watch.
     _watcher: Debouncer<RecommendedWatcher, RecommendedCache>,
 }
@@ -53,7 +65,7 @@ impl Reloader {
                 watcher.watch(folder, RecursiveMode::Recursive).map_err(|e| format!("{}: {e}", folder.display()))?;
             }
         }
-        Ok(Self { assets: assets.clone(), key: key.to_owned(), changes, _watcher: watcher })
+        Ok(Self { assets: assets.clone(), key: key.to_owned(), changes, held: RefCell::default(), _watcher: watcher })
     }
 
     /// The system that is watched.
@@ -63,14 +75,28 @@ impl Reloader {
 
     /// What changed since the last time, if anything did.
     pub fn changed(&self) -> Option<Change> {
-        let mut changed = None;
+        let mut held = self.held.borrow_mut();
+        let empty = |path: &PathBuf| path.metadata().is_ok_and(|m| m.is_file() && m.len() == 0);
         while let Ok(batch) = self.changes.try_recv() {
-            changed = changed.max(match batch {
-                Ok(events) => events.iter().filter_map(matters).max(),
-                Err(_) => Some(Change::All),
-            });
+            let Ok(events) = batch else {
+                held.change = Some(Change::All);
+                continue;
+            };
+            for event in &events {
+                let Some(change) = matters(event) else { continue };
+                held.change = held.change.max(Some(change));
+                for path in event.paths.iter().filter(|path| of_file(path).is_some()) {
+                    let known = held.empty.iter().position(|(known, _)| known == path);
+                    match (empty(path), known) {
+                        (true, None) => held.empty.push((path.clone(), Instant::now())),
+                        (false, Some(i)) => drop(held.empty.remove(i)),
+                        _ => {}
+                    }
+                }
+            }
         }
-        changed
+        held.empty.retain(|(_, since)| since.elapsed() < EMPTY);
+        if held.empty.is_empty() { held.change.take() } else { None }
     }
 
     /// `None` while nothing changed; else the system as it is now, or everything that is wrong with it. `last` is the last good one.

@@ -1,17 +1,57 @@
 //! JSON Schemas for editors of TOML: written from the same [`fields`](super::fields) by which files are read. `syzygy check-assets --schema
 //! atmosphere` prints one; the shipped copies are `assets/*.schema.json`, kept true by a test.
 
-use super::fields::{Field, Kind, Span};
+use super::fields::{Field, Kind, Span, Ways};
 use serde_json::{Map, Value, json};
 
 /// Which edition of JSON Schema.
 const DRAFT: &str = "http://json-schema.org/draft-07/schema#";
 
+/// What fields alone do not say of a kind of file.
+#[derive(Clone, Copy, Debug)]
+pub struct Rules {
+    /// The key whose word says which others are needed; the first word is that of a file without the key.
+    pub chosen_by: &'static str,
+    /// What each word needs.
+    pub needed: &'static [(&'static str, &'static [&'static str])],
+    /// Tables that can be filled in several ways, by their path.
+    pub ways: &'static [(&'static str, Ways)],
+}
+
 /// The schema of a whole file of these fields.
-pub fn of_file(title: &str, fields: &[Field]) -> Value {
+pub fn of_file(title: &str, fields: &[Field], rules: Rules) -> Value {
     let mut schema = table(fields, false);
     named(&mut schema, title);
+    for (path, ways) in rules.ways {
+        let Some(inside) = path.split('.').try_fold(&mut schema, |at, key| inside(at, key)) else { continue };
+        inside["oneOf"] = each_way(ways);
+    }
+    let key = rules.chosen_by;
+    let first = rules.needed.first().map_or("", |n| n.0);
+    let each = rules.needed.iter().map(|(word, needed)| {
+        let mut chosen = json!({ "properties": { key: { "const": word } } });
+        if *word != first {
+            chosen["required"] = json!([key]);
+        }
+        json!({ "if": chosen, "then": { "required": needed } })
+    });
+    schema["allOf"] = each.collect();
     schema
+}
+
+/// The schema of a key's table, or of the tables in its list.
+fn inside<'a>(schema: &'a mut Value, key: &str) -> Option<&'a mut Value> {
+    let inside = schema.get_mut("properties")?.get_mut(key)?;
+    if inside.get("items").is_some() { inside.get_mut("items") } else { Some(inside) }
+}
+
+fn each_way(ways: &Ways) -> Value {
+    let way = |needed: &&[&str]| {
+        let others: Map<String, Value> =
+            ways.apart.iter().filter(|key| !needed.contains(*key)).map(|key| ((*key).to_owned(), false.into())).collect();
+        json!({ "required": needed, "properties": others })
+    };
+    ways.each.iter().map(way).collect()
 }
 
 /// The schema of a patch of such a file: no key is needed, and lists may be changed by the names in them.

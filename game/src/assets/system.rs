@@ -3,7 +3,7 @@
 use super::atmosphere::{AirSpec, Datum, Setting, read_air};
 use super::body::{BodySpec, read_body};
 use super::fault::{AssetErrors, Fault, nearest};
-use super::listing::{Top, read_listed, read_top, tell_orphans};
+use super::listing::{Top, read_listed, read_top, tell_orphans, tell_replaced};
 use super::overlay::{Overlay, read_text};
 use super::reader::{Faults, Reader, count_errors};
 use super::relief::load_maps;
@@ -86,8 +86,9 @@ fn read(overlay: &Overlay, key: &str, faults: &Faults, hash: &mut blake3::Hasher
             continue;
         };
         digest(&tree, &["name", "albedo"], hash);
-        let spec = read_body(body, Reader::new(&tree, faults));
-        specs.push(spec);
+        let first = faults.borrow().len();
+        specs.push(read_body(body, Reader::new(&tree, faults)));
+        tell_replaced(overlay, &format!("bodies/{body}/body.toml"), first, faults);
     }
     let starlight = specs.iter().find_map(|s| s.starlight.clone()).unwrap_or_default();
     let with_air = |spec: BodySpec| {
@@ -206,10 +207,11 @@ fn read_atmosphere(overlay: &Overlay, body: &str, datum: Datum, star: &Starlight
     if let Some(physics) = tree.get("physics") {
         physics.value.digest(&mut hash);
     }
-    (
-        read_air(&Reader::new(&tree, faults), datum, &Setting { beside: &|name| overlay.find(format!("bodies/{body}/{name}")), star }),
-        hash.finalize().to_hex().to_string(),
-    )
+    let first = faults.borrow().len();
+    let beside = |name: &str| overlay.find(format!("bodies/{body}/{name}"));
+    let air = read_air(&Reader::new(&tree, faults), datum, &Setting { beside: &beside, star });
+    tell_replaced(overlay, &relative, first, faults);
+    (air, hash.finalize().to_hex().to_string())
 }
 
 /// Feeds a file's values to the hash, but for what a flight does not depend on.

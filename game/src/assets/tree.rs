@@ -147,7 +147,11 @@ fn change(list: &mut Vec<Node>, changes: Vec<Entry>, faults: &mut Vec<Fault>) {
                     }
                 }
             }
-            ("add" | "remove", _) => faults.push(Fault::at(&value.at, format!("`{key}`: expected a list"))),
+            ("add", _) => faults.push(
+                Fault::at(&value.at, "`add`: expected a list of tables")
+                    .help(Some("each one begins with [[….add]], in double brackets".to_owned())),
+            ),
+            ("remove", _) => faults.push(Fault::at(&value.at, "`remove`: expected a list of names")),
             (name, data) => match list.iter_mut().find(|item| item.name() == Some(name)) {
                 Some(item) if matches!(data, Data::Table(_)) => item.patch(Node { at: value.at, data }, faults),
                 Some(_) => faults.push(Fault::at(&value.at, format!("`{name}`: expected a table with the keys to change"))),
@@ -165,6 +169,7 @@ impl Node {
                 let kind = |list: &[Entry]| list.iter().find(|e| e.key == "kind").and_then(|e| e.value.text().map(str::to_owned));
                 if kind(&theirs).is_some_and(|new| kind(mine).is_some_and(|old| old != new)) {
                     *mine = theirs;
+                    self.at = patch.at;
                     return;
                 }
                 for entry in theirs {

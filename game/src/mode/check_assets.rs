@@ -4,7 +4,7 @@
 //! is hardly meant is a warning: it goes to stderr, and the exit code stays 0. `--schema KIND` prints a JSON Schema for editors instead.
 
 use super::{Error, places};
-use crate::assets::atmosphere::keys::ATMOSPHERE;
+use crate::assets::atmosphere::keys::{self, ATMOSPHERE};
 use crate::assets::{AssetErrors, Assets, schema};
 use crate::cli::{CheckAssetsArgs, SchemaKind};
 use std::path::{Path, PathBuf};
@@ -79,7 +79,10 @@ fn check(assets: &Assets, part: &Part) -> Result<Sound, AssetErrors> {
 /// The schema of a kind of file, as JSON text.
 pub fn schema(kind: SchemaKind) -> String {
     let schema = match kind {
-        SchemaKind::Atmosphere => schema::of_file("Syzygy: atmosphere.toml", ATMOSPHERE),
+        SchemaKind::Atmosphere => {
+            let rules = schema::Rules { chosen_by: "model", needed: keys::NEEDED, ways: keys::WAYS };
+            schema::of_file("Syzygy: atmosphere.toml", ATMOSPHERE, rules)
+        }
         SchemaKind::AtmospherePatch => schema::of_patch("Syzygy: atmosphere.patch.toml", ATMOSPHERE),
     };
     format!("{schema:#}\n")

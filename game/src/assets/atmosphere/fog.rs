@@ -2,6 +2,7 @@
 //!
 //! Not here: how they are lit and drawn (`engine::air::model::thickness`), nor the body's own air ([`super`]).
 
+use super::layers::check_names;
 use super::{Datum, tell};
 use crate::assets::reader::{ANY, Reader};
 use crate::assets::tree::Node;
@@ -12,7 +13,9 @@ use engine::units::DEG;
 
 /// Reads the list; what is out of range is written down.
 pub fn read(r: &Reader<'_>, datum: Datum) -> Vec<Fog> {
-    r.tables("fog").into_iter().filter_map(|t| bank(&t, datum)).collect()
+    let tables = r.tables("fog");
+    check_names(&tables);
+    tables.iter().filter_map(|t| bank(t, datum)).collect()
 }
 
 fn bank(t: &Reader<'_>, datum: Datum) -> Option<Fog> {

@@ -1,7 +1,7 @@
 //! The keys of `atmosphere.toml`: the table by which it is read, from which its schema is written and its editor made. Ranges are the
 //! engine's where it has them; what depends on other keys is checked when the air is built ([`super`]).
 
-use super::super::fields::{Field, Kind, Span, Variant, may, must};
+use super::super::fields::{Field, Kind, Span, Variant, Ways, may, must};
 
 /// Coefficients of a layer, m⁻¹.
 const PER_M: Kind = Kind::Rgb(Span::log(0.0, 1.0));
@@ -41,6 +41,21 @@ pub const MODELS: &[(&str, &str)] = &[
     ("none", "nothing is seen of it; what drags is kept"),
 ];
 
+/// What each model cannot do without; a file that names none is by the first.
+pub const NEEDED: &[(&str, &[&str])] = &[
+    ("physical", &["top_altitude_m", "ground_albedo", "layers"]),
+    ("view_table", &["top_altitude_m", "ground_albedo", "layers"]),
+    ("thickness", &["top_altitude_m"]),
+    ("limb_table", &["top_altitude_m"]),
+    ("gradient", &["top_altitude_m"]),
+    ("none", &[]),
+];
+
+/// What a model cannot do without.
+pub fn needed(model: &str) -> &'static [&'static str] {
+    NEEDED.iter().find(|(word, _)| *word == model).map_or(&[], |(_, keys)| keys)
+}
+
 /// Where the three channels come from.
 const SPECTRA: &[(&str, &str)] = &[
     ("rgb", "physical inputs at one wavelength for each channel"),
@@ -62,6 +77,42 @@ pub const LAYER: &[Field] = &[
     may("table", Kind::Table(BY_WAVELENGTH), "in place of the coefficients: coefficients at many wavelengths"),
     may("profile", Kind::Variants(PROFILE), "density against altitude, relative to the coefficients"),
     may("phase", Kind::Variants(PHASE), "where scattered light goes"),
+];
+
+/// Ways to describe a layer.
+pub const DESCRIBED: Ways = Ways {
+    apart: &["scattering_per_m", "absorption_per_m", "gas", "aerosol", "absorber", "table"],
+    each: &[
+        &["scattering_per_m", "absorption_per_m", "profile", "phase"],
+        &["gas"],
+        &["aerosol", "profile", "phase"],
+        &["absorber", "profile"],
+        &["table", "profile", "phase"],
+    ],
+};
+
+/// Tables that can be filled in several ways, by their path in the file.
+pub const WAYS: &[(&str, Ways)] = &[
+    ("layers", DESCRIBED),
+    (
+        "layers.gas",
+        Ways {
+            apart: &["molecules", "refractive_index", "molecular_density_per_m3", "pressure_pa"],
+            each: &[
+                &["molecules", "pressure_pa", "temperature_k"],
+                &["molecules", "molecular_density_per_m3"],
+                &["refractive_index", "pressure_pa", "temperature_k"],
+                &["refractive_index", "molecular_density_per_m3"],
+            ],
+        },
+    ),
+    (
+        "layers.aerosol",
+        Ways {
+            apart: &["optical_depth", "particle_density_per_m3"],
+            each: &[&["optical_depth"], &["particle_density_per_m3", "particle_radius_m"]],
+        },
+    ),
 ];
 
 /// A gas: the ranges are those of `engine::air::optics`.

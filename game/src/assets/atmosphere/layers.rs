@@ -13,21 +13,24 @@ const RESERVED: [&str; 2] = ["add", "remove"];
 
 /// Reads the list; what is left out and needed is written down.
 pub fn read(r: &Reader<'_>, datum: Datum, channels: Channels) -> Vec<SpectralLayer> {
+    let tables = r.tables("layers");
+    check_names(&tables);
+    tables.iter().filter_map(|t| layer(t, datum, channels)).collect()
+}
+
+/// Items of a list are called by their names in patches: each name is there once.
+pub fn check_names(items: &[Reader<'_>]) {
     let mut names: Vec<String> = Vec::new();
-    let mut layers = Vec::new();
-    for t in r.tables("layers") {
-        if let Some(name) = t.maybe_text("name") {
-            let place = t.node.place_of("name");
-            if names.contains(&name) {
-                t.fault(Fault::at(&place, format!("`name` = \"{name}\": another layer is named so: expected each name once")));
-            } else if RESERVED.contains(&name.as_str()) {
-                t.fault(Fault::at(&place, format!("`name` = \"{name}\": patches of the list use this word: expected another name")));
-            }
-            names.push(name);
+    for t in items {
+        let Some(name) = t.maybe_text("name") else { continue };
+        let place = t.node.place_of("name");
+        if names.contains(&name) {
+            t.fault(Fault::at(&place, format!("`name` = \"{name}\": another one is named so: expected each name once")));
+        } else if RESERVED.contains(&name.as_str()) {
+            t.fault(Fault::at(&place, format!("`name` = \"{name}\": patches of the list use this word: expected another name")));
         }
-        layers.extend(layer(&t, datum, channels));
+        names.push(name);
     }
-    layers
 }
 
 fn layer(t: &Reader<'_>, datum: Datum, channels: Channels) -> Option<SpectralLayer> {

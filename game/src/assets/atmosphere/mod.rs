@@ -118,15 +118,12 @@ fn column_of(r: &Reader<'_>, datum: Datum) -> ColumnSpec {
 fn look_of(r: &Reader<'_>, datum: Datum, setting: &Setting<'_>) -> Option<(Air, SpectralMedium)> {
     let before = r.errors();
     let word = r.node.get("model").and_then(|e| e.value.text()).unwrap_or("physical");
-    if word == "none" {
+    fields::demand(r, keys::ATMOSPHERE, keys::needed(word));
+    if word == "none" || r.errors() > before {
         return None;
     }
     let top_altitude_m = r.number("top_altitude_m", ANY);
-    let lit_by_layers = matches!(word, "physical" | "view_table");
-    let ground_albedo = if lit_by_layers || r.has("ground_albedo") { r.numbers("ground_albedo", ANY) } else { [0.0; 3] };
-    if lit_by_layers {
-        r.needed("layers", "a list of tables [[layers]], or `layers = []` for a vacuum");
-    }
+    let ground_albedo = if r.has("ground_albedo") { r.numbers("ground_albedo", ANY) } else { [0.0; 3] };
     let wavelengths_m = r.has("wavelengths_nm").then(|| r.numbers("wavelengths_nm", ANY).map(|nm| nm * NM));
     let wavelengths_m = wavelengths_m.unwrap_or(SpectralMedium::WAVELENGTHS_M);
     let layers = layers::read(r, datum, Channels { wavelengths_m });

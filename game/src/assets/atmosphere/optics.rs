@@ -1,8 +1,9 @@
 //! Layers by what they are made of: `gas`, `aerosol`, `absorber` and `table`, in place of three coefficients. The physics is the engine's
 //! ([`engine::air::optics`]); here its numbers are read.
 
-use super::Datum;
 use super::layers::typed;
+use super::{Datum, keys};
+use crate::assets::fault::Fault;
 use crate::assets::reader::{ANY, Reader};
 use engine::air::optics::{Aerosol, Amount, Gas, Load, Molecule, Refraction};
 use engine::air::spectral::{Optics, SpectralLayer};
@@ -39,7 +40,13 @@ pub fn read(t: &Reader<'_>, datum: Datum, channels: Channels) -> Option<Spectral
     if described.len() > 1 || t.has("scattering_per_m") || t.has("absorption_per_m") {
         let all = described.iter().map(|k| format!("`{k}`")).collect::<Vec<_>>().join(" and ");
         let expected = "expected one of `gas`, `aerosol`, `absorber`, `table`, or `scattering_per_m` with `absorption_per_m`";
-        t.wrong(described.first().copied().unwrap_or("gas"), format!("{all}: a layer is described twice: {expected}"));
+        // Told at what was written last: by a patch, where one is to blame.
+        let given: Vec<&str> = keys::DESCRIBED.apart.iter().copied().filter(|key| t.node.get(key).is_some()).collect();
+        let patched = given.iter().find(|key| t.node.place_of(key).source.path != t.node.at.source.path);
+        let at = t.node.place_of(patched.or(described.first()).copied().unwrap_or_default());
+        let help =
+            format!("in a patch, `remove = [\"{}\"]` takes out what the file below it has", described.first().copied().unwrap_or("gas"));
+        t.fault(Fault::at(&at, format!("{all}: a layer is described twice: {expected}")).help(patched.map(|_| help)));
         return None;
     }
     let kind = described.first().copied()?;
@@ -71,7 +78,7 @@ fn one_of(r: &Reader<'_>, one: &'static str, other: &'static str) -> Option<&'st
         (both, _) => {
             let found = if both { "both are given" } else { "neither is given" };
             let place = r.node.at.clone();
-            r.fault(crate::assets::fault::Fault::at(&place, format!("`{one}` or `{other}`: {found}: expected one of the two")));
+            r.fault(Fault::at(&place, format!("`{one}` or `{other}`: {found}: expected one of the two")));
             None
         }
     }
@@ -82,7 +89,13 @@ fn gas(r: &Reader<'_>, channels: Channels) -> Option<Gas> {
         "molecules" => {
             let shares = r.table("molecules")?;
             let share = |(name, molecule): (&'static str, Molecule)| shares.maybe_number(name, ANY).map(|share| (molecule, share));
-            Refraction::Molecules(Molecule::NAMES.into_iter().filter_map(share).collect())
+            let all: Vec<(Molecule, f64)> = Molecule::NAMES.into_iter().filter_map(share).collect();
+            if all.iter().map(|m| m.1).sum::<f64>() <= 0.0 {
+                let known = Molecule::NAMES.map(|m| m.0).join(", ");
+                r.wrong("molecules", format!("`molecules`: expected a share above 0 of at least one of {known}"));
+                return None;
+            }
+            Refraction::Molecules(all)
         }
         _ => Refraction::Index {
             index: channels.curve(r, "refractive_index"),

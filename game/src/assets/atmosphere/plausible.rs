@@ -4,7 +4,7 @@
 use crate::assets::fault::Fault;
 use crate::assets::tree::{Data, Node};
 use engine::air::optics::BOLTZMANN_J_K;
-use engine::air::{Air, Column, Layer, Phase};
+use engine::air::{Air, Column, Layer, Model, Phase};
 use engine::space::relative::narrow;
 use glam::DVec3;
 
@@ -28,14 +28,23 @@ pub fn suspicions(tree: &Node, look: &Air, column: Option<&Column>, gravity_m_s2
         found.push(Fault::warning(&tree.place_of(place), message).help(Some(help.to_owned())));
     };
     let medium = &look.medium;
-    let mut total = DVec3::ZERO;
+    let layers: &[Node] = match tree.get("layers").map(|e| &e.value.data) {
+        Some(Data::Array(layers)) => layers,
+        _ => &[],
+    };
+    let (mut total, mut thickest) = (DVec3::ZERO, (0.0, "layers".to_owned()));
     for (i, layer) in medium.layers.iter().enumerate() {
         let column_m = column_m(layer, medium.top_altitude_m);
         let extinction = (layer.scattering_per_m + layer.absorption_per_m).as_dvec3();
         let depth = extinction * column_m;
-        let strongest = if depth_of(layer.absorption_per_m) > depth_of(layer.scattering_per_m) { "absorption" } else { "scattering" };
-        let place = format!("layers[{i}].{strongest}_per_m");
-        if (ABSURD_DEPTH..1000.0 * THICK_DEPTH).contains(&depth.max_element()) {
+        let written = layers.get(i);
+        let name =
+            written.and_then(|n| n.get("name")).and_then(|e| e.value.text()).map_or_else(|| format!("layer {i}"), |n| format!("`{n}`"));
+        let place = format!("layers[{i}].{}", amount(written, layer));
+        // Only coefficients have a length in them that could be another one.
+        let by_coefficients = written.and_then(|n| n.get("scattering_per_m").or(n.get("table"))).is_some();
+        let per_km = by_coefficients && (ABSURD_DEPTH..1000.0 * THICK_DEPTH).contains(&depth.max_element());
+        if per_km {
             tell(
                 &place,
                 format!("vertical optical depth {:.3} of this layer: the coefficients look like values per kilometre", depth.max_element()),
@@ -43,8 +52,22 @@ pub fn suspicions(tree: &Node, look: &Air, column: Option<&Column>, gravity_m_s2
             );
         } else {
             total += depth;
+            if depth.max_element() > thickest.0 {
+                thickest = (depth.max_element(), place);
+            }
+            // Of coefficients that are a thousand times too large every altitude would be an edge.
+            hard_edge(layer, &name, medium.bottom_radius_m, medium.top_altitude_m, &mut tell);
         }
-        hard_edge(layer, i, medium.bottom_radius_m, medium.top_altitude_m, &mut tell);
+        if let Phase::Table { angle_deg, .. } = &layer.phase {
+            let ends = (angle_deg.first().copied().unwrap_or(0.0), angle_deg.last().copied().unwrap_or(180.0));
+            if ends.0 > 0.0 || ends.1 < 180.0 {
+                tell(
+                    &format!("layers[{i}].phase.angle_deg"),
+                    format!("a phase function from {}° to {}°: beyond its ends the values there hold on", ends.0, ends.1),
+                    "scattering angles run from 0°, straight on, to 180°, straight back",
+                );
+            }
+        }
         let s = layer.scattering_per_m;
         if matches!(layer.phase, Phase::Rayleigh | Phase::ElekRayleigh) && s.x > 1.05 * s.z && s.z > 0.0 {
             tell(
@@ -60,12 +83,37 @@ pub fn suspicions(tree: &Node, look: &Air, column: Option<&Column>, gravity_m_s2
     }
     if total.max_element() > ABSURD_DEPTH {
         tell(
-            "layers",
+            &thickest.1,
             format!("vertical optical depth {:.3} of all layers: no light comes through", total.max_element()),
             "Venus's clouds have about 30",
         );
     }
+    let lit_by_layers = matches!(look.model, Model::Physical(_) | Model::ViewTable(_));
+    if lit_by_layers && total == DVec3::ZERO && found.is_empty() && column.is_some_and(|c| c.at(0.0).density_kg_m3 > 0.0) {
+        let unseen = "this air drags and is not seen: no layer scatters or absorbs".to_owned();
+        found.push(Fault::warning(&tree.place_of("layers"), unseen).help(Some("`model = \"none\"` says that it is meant".to_owned())));
+    }
     found
+}
+
+/// The key by which a layer is as thick as it is.
+fn amount(written: Option<&Node>, layer: &Layer) -> &'static str {
+    let strongest =
+        if depth_of(layer.absorption_per_m) > depth_of(layer.scattering_per_m) { "absorption_per_m" } else { "scattering_per_m" };
+    let keys = [
+        strongest,
+        "table.scattering_per_m",
+        "aerosol.optical_depth",
+        "aerosol.particle_density_per_m3",
+        "absorber.column_du",
+        "gas.pressure_pa",
+        "gas.molecular_density_per_m3",
+    ];
+    let there = |key: &&str| {
+        let mut parts = key.split('.');
+        written.is_some_and(|node| parts.try_fold(node, |at, part| at.get(part).map(|e| &e.value)).is_some())
+    };
+    keys.into_iter().find(there).unwrap_or(strongest)
 }
 
 fn depth_of(v: glam::Vec3) -> f64 {
@@ -79,19 +127,18 @@ pub fn column_m(layer: &Layer, top_m: f64) -> f64 {
 }
 
 /// Air that is not negligible at the top ends there in a visible edge.
-fn hard_edge(layer: &Layer, i: usize, radius_m: f64, top_m: f64, tell: &mut impl FnMut(&str, String, &str)) {
+fn hard_edge(layer: &Layer, name: &str, radius_m: f64, top_m: f64, tell: &mut impl FnMut(&str, String, &str)) {
     let density = layer.profile.density(top_m * (1.0 - 1e-9));
     let extinction = depth_of(layer.scattering_per_m + layer.absorption_per_m);
     // A ray that grazes the shell one hundredth below the top.
     let way = 2.0 * (2.0 * (radius_m + top_m) * 0.01 * top_m).sqrt();
     let depth = extinction * density * way;
     if depth > EDGE_DEPTH {
+        let percent = 100.0 * density;
+        let share = if percent < 0.1 { format!("{percent:.0e}") } else { format!("{percent:.1}") };
         tell(
             "top_altitude_m",
-            format!(
-                "a hard edge: layer {i} still has {:.2} % of its density at the top (grazing optical depth {depth:.2})",
-                100.0 * density
-            ),
+            format!("a hard edge: {name} still has {share} % of its density at the top (grazing optical depth {depth:.2})"),
             "raise the top, or lower the scale height: an exponential layer wants a top of about 12 scale heights",
         );
     }

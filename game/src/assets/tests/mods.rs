@@ -182,7 +182,7 @@ fn an_air_that_is_hardly_meant_is_told_and_taken() {
     for (from, to, line, words) in [
         ("[5.8e-6, 13.5e-6, 33.1e-6]", "[5.8e-3, 13.5e-3, 33.1e-3]", 4, "look like values per kilometre"),
         ("top_altitude_m = 80000.0", "top_altitude_m = 20000.0", 1, "a hard edge"),
-        ("scattering_per_m = [5.8e-6, 13.5e-6, 33.1e-6]", "scattering_per_m = [0.9, 13.5e-6, 33.1e-6]", 3, "no light comes through"),
+        ("scattering_per_m = [5.8e-6, 13.5e-6, 33.1e-6]", "scattering_per_m = [0.9, 13.5e-6, 33.1e-6]", 4, "no light comes through"),
     ] {
         let warnings = warned(from, to);
         let told = |w: &String| {
@@ -201,6 +201,183 @@ fn an_air_that_is_hardly_meant_is_told_and_taken() {
     assert_eq!(rayleigh("8000.0"), [""; 0]);
     let told = rayleigh("4000.0");
     assert!(told.len() == 1 && told[0].contains("p ≠ ρ R T / M") && told[0].contains("atmosphere.toml:6:"), "{told:#?}");
+    // Each alone, in place of the one layer; and the same made sound.
+    let by = |layer: &str, top: &str| {
+        let (head, rest) = AIR.split_once("scattering_per_m").unwrap();
+        let physics = rest.split_once("[physics]").unwrap().1;
+        put(dir.path(), AIR_FILE, format!("{}{layer}\n[physics]{physics}", head.replace("80000.0", top)).as_bytes());
+        load_system(dir.path(), &[], "t").unwrap_or_else(|e| panic!("{}", e.text())).warnings.clone()
+    };
+    let gas = |p: &str, t: &str| {
+        format!("name = \"g\"\ngas = {{ molecules = {{ n2 = 0.78, o2 = 0.22 }}, pressure_pa = {p}, temperature_k = {t} }}")
+    };
+    let haze = |depth: &str| {
+        format!(
+            "name = \"h\"\naerosol = {{ optical_depth = {depth}, single_scattering_albedo = 0.9 }}\n\
+             profile = {{ kind = \"exponential\", scale_height_m = 1000.0 }}\nphase = {{ kind = \"isotropic\" }}"
+        )
+    };
+    let phase =
+        |angles: &str| haze("0.1").replace("kind = \"isotropic\"", &format!("kind = \"table\", angle_deg = {angles}, value = [2, 1]"));
+    let molecules = |s: &str| {
+        format!(
+            "name = \"m\"\nscattering_per_m = {s}\nabsorption_per_m = [0, 0, 0]\n\
+             profile = {{ kind = \"exponential\", scale_height_m = 8000.0 }}\nphase = {{ kind = \"rayleigh\" }}"
+        )
+    };
+    for (odd, sound, top, line, words) in [
+        // p, ρ and T of the gas that is seen against [physics]: half the pressure; the wrong temperature.
+        (gas("45000.0", "280.0"), gas("90000.0", "280.0"), "100000.0", 5, "molecules per m³ are seen"),
+        (gas("90000.0", "120.0"), gas("90000.0", "270.0"), "100000.0", 5, "p ≠ ρ R T / M"),
+        (haze("300.0"), haze("30.0"), "80000.0", 5, "no light comes through"),
+        (molecules("[33.1e-6, 13.5e-6, 5.8e-6]"), molecules("[5.8e-6, 13.5e-6, 33.1e-6]"), "100000.0", 5, "more red than blue"),
+        (phase("[20, 180]"), phase("[0, 180]"), "80000.0", 7, "from 20° to 180°"),
+        (phase("[0, 90]"), phase("[0, 180]"), "80000.0", 7, "from 0° to 90°"),
+        (molecules("[0, 0, 0]"), molecules("[5.8e-6, 13.5e-6, 33.1e-6]"), "100000.0", 3, "drags and is not seen"),
+        (gas("90000.0", "280.0"), gas("90000.0", "280.0"), "30000.0", 1, "a hard edge: `g`"),
+    ] {
+        let told = by(&odd, top);
+        let here = |w: &String| w.contains(&format!("atmosphere.toml:{line}:")) && w.contains(words) && w.contains("help: ");
+        assert!(told.iter().any(here), "{odd}\n{words}: {told:#?}");
+        assert!(!told.iter().any(|w| w.contains("per kilometre")), "{told:#?}");
+        if odd != sound {
+            assert_eq!(by(&sound, top), [""; 0], "{sound}");
+        }
+    }
+}
+
+#[test]
+fn a_file_that_nobody_reads_is_told_with_the_name_that_it_should_have() {
+    let dir = assets();
+    for (file, help) in [
+        ("bodies/rock/atmosphere.pacth.toml", "did you mean `atmosphere.patch.toml`?"),
+        ("body/rock/atmosphere.patch.toml", "known here: bodies, systems, ships, starts"),
+        ("systems/t/systm.patch.toml", "did you mean `system.patch.toml`?"),
+        ("atmosphere.patch.toml", "bodies/<body>/"),
+        ("ships/torch.patch.toml", "without a patch"),
+    ] {
+        let one = tempfile::tempdir().unwrap();
+        let path = put(one.path(), file, b"top_altitude_m = 1e5\n");
+        let assets = Assets::new(dir.path().to_owned(), vec![one.path().to_owned()]);
+        let system = assets.system("t", &|_, _| ()).unwrap_or_else(|e| panic!("{}", e.text()));
+        let airs = assets.airs(&system).unwrap();
+        for warnings in [&system.warnings, &airs.warnings, &assets.check().unwrap()] {
+            let [told] = warnings.as_slice() else { panic!("{file}: {warnings:#?}") };
+            assert!(told.contains(&path.display().to_string()) && told.contains("nothing reads") && told.contains(help), "{told}");
+        }
+    }
+}
+
+#[test]
+fn the_slips_of_a_first_patch_are_told_where_they_were_made() {
+    let dir = assets();
+    let one = tempfile::tempdir().unwrap();
+    let named = AIR.replace("[[layers]]\n", "[[layers]]\nname = \"gas\"\n");
+    put(dir.path(), AIR_FILE, named.as_bytes());
+    let told = |file: &str, text: &[u8]| {
+        let path = put(one.path(), file, text);
+        let told = load_system(dir.path(), &[one.path().to_owned()], "t").expect_err(&String::from_utf8_lossy(text)).text();
+        fs::remove_file(&path).unwrap();
+        assert!(told.contains(&path.display().to_string()), "the fault is in the patch:\n{told}");
+        told
+    };
+    let patch = "bodies/rock/atmosphere.patch.toml";
+    for (text, words) in [
+        ("[layers.gas.profile]\nkind = \"tent\"\nbottom_m = 0\n", vec![":1:", "missing key `peak_m`"]),
+        ("[layers.gas]\naerosol = { optical_depth = 0.1, single_scattering_albedo = 0.9 }\n", vec![":2:1", "described twice", "remove"]),
+        ("[layers.add]\nname = \"x\"\n", vec![":1:", "`add`: expected a list of tables", "[[….add]]"]),
+        (
+            "[[fog]]\nname = \"a\"\nlatitude_deg = 1\nlongitude_deg = 1\naltitude_m = 1\nradius_m = 9\n[[fog]]\nname = \"a\"\nlatitude_deg = 1\nlongitude_deg = 1\naltitude_m = 1\nradius_m = 9\n",
+            vec![":8:8", "another one is named so"],
+        ),
+        ("top_altitude_m = 9e4\r# old line ends\r", vec!["line 1", "carriage return", "Unix or Windows"]),
+        ("[layers.\"Дым\"]\nscattering_per_m = [1, 1, 1]\n", vec!["Дым", "known here: gas"]),
+    ] {
+        let message = told(patch, text.as_bytes());
+        for word in words {
+            assert!(message.contains(word), "`{word}` in\n{message}");
+        }
+    }
+    // What was meant as a patch and replaces all.
+    let message = told(AIR_FILE, b"top_altitude_m = 9e4\n");
+    assert!(message.contains("`atmosphere.patch.toml`") && message.contains("missing key `layers`"), "{message}");
+    let message = told(ROCK_FILE, b"radius_km = 6001.0\n");
+    assert!(message.contains("`body.patch.toml`"), "{message}");
+    let message = told(AIR_FILE, b"top_altitude_m = 9e4\nground_albedo = [0, 0, 0]\n[layers.gas]\nname = \"x\"\n");
+    assert!(message.contains("[[layers]]") && message.contains("*.patch.toml"), "{message}");
+    let message = told(AIR_FILE, b"");
+    assert!(message.contains("missing key `top_altitude_m`") && message.contains(":1:1"), "{message}");
+    // A mark of the byte order and line ends of Windows are no fault.
+    put(one.path(), patch, "\u{feff}top_altitude_m = 90000.0\r\n[layers.gas.profile]\r\nscale_height_m = 7000.0\r\n".as_bytes());
+    let system = load_system(dir.path(), &[one.path().to_owned()], "t").unwrap_or_else(|e| panic!("{}", e.text()));
+    assert_eq!(system.body(system.find("rock").unwrap()).look.as_ref().unwrap().medium.top_altitude_m, 9e4);
+}
+
+#[test]
+fn a_long_line_is_cut_around_its_fault_and_a_screen_shows_few_in_full() {
+    let dir = assets();
+    let long = format!("top_altitude_m = \"high\" # {}\nthin = 1\nrare = 2\nlow = 3\nblue = 4\n", "x".repeat(300));
+    put(dir.path(), AIR_FILE, AIR.replace("top_altitude_m = 80000.0\n", &long).as_bytes());
+    let errors = load_system(dir.path(), &[], "t").unwrap_err();
+    let text = errors.text();
+    assert!(text.contains("1 | top_altitude_m = \"high\" # x") && text.contains("x…\n    |                  ^^^^^^"), "{text}");
+    let screen = errors.on_screen();
+    assert!(screen.lines().all(|l| !l.contains(" | ") || l.chars().count() < 100), "{screen}");
+    assert!(screen.contains("1 | top_altitude_m") && screen.contains("and 1 more: `syzygy check-assets`"), "{screen}");
+    // A fault at the far end of a line is in the excerpt, too.
+    let values = (0..60).map(|i| i.to_string()).collect::<Vec<_>>().join(", ");
+    let bad = AIR.replace(
+        "phase = { kind = \"cornette_shanks\", g = 0.8 }",
+        &format!("phase = {{ kind = \"table\", angle_deg = [0, 180], value = [{values}, -7] }}"),
+    );
+    put(dir.path(), AIR_FILE, bad.as_bytes());
+    let text = load_system(dir.path(), &[], "t").unwrap_err().text();
+    let lines: Vec<&str> = text.lines().collect();
+    let at = lines.iter().position(|l| l.contains("-7] }")).unwrap();
+    assert!(lines[at].contains("| …"), "{text}");
+    let caret = lines[at + 1].find('^').unwrap();
+    assert_eq!(lines[at].chars().skip(caret).take(2).collect::<String>(), "-7", "{text}");
+}
+
+#[test]
+fn an_emptied_file_waits_for_what_is_written_and_saves_that_follow_each_other_end_in_the_last() {
+    use std::time::{Duration, Instant};
+    let dir = assets();
+    let file = put(dir.path(), AIR_FILE, AIR.as_bytes());
+    let assets = Assets::new(dir.path().to_owned(), Vec::new());
+    let first = assets.system("t", &|_, _| ()).unwrap();
+    let reloader = Reloader::watch(&assets, "t").unwrap();
+    let blue = |system: &System| system.body(system.find("rock").unwrap()).look.as_ref().unwrap().medium.layers[0].scattering_per_m.z;
+    // All that is heard until nothing has come for half a second.
+    let heard = || {
+        let (mut all, mut last) = (Vec::new(), Instant::now());
+        while last.elapsed() < Duration::from_millis(700) {
+            if let Some(read) = reloader.poll(&first) {
+                all.push(read.map(|s| blue(&s)).map_err(|e| e.text()));
+                last = Instant::now();
+            }
+            std::thread::sleep(Duration::from_millis(2));
+        }
+        all
+    };
+    fs::write(&file, "").unwrap();
+    std::thread::sleep(Duration::from_millis(150));
+    assert_eq!(reloader.changed(), None, "an empty file is not believed at once");
+    fs::write(&file, AIR.replace("33.1e-6", "4e-5")).unwrap();
+    let told = heard();
+    assert!(!told.is_empty() && told.iter().all(|read| *read == Ok(4e-5)), "and never told: {told:?}");
+    for value in ["5e-5", "6e-5", "7e-5"] {
+        fs::write(&file, AIR.replace("33.1e-6", value)).unwrap();
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    assert_eq!(heard().last(), Some(&Ok(7e-5)));
+    // Touched, with nothing changed: the same air.
+    fs::File::options().append(true).open(&file).unwrap().set_modified(std::time::SystemTime::now()).unwrap();
+    assert!(heard().iter().all(|read| *read == Ok(7e-5)));
+    // One that stays empty is told after a while.
+    fs::write(&file, "").unwrap();
+    let told = heard();
+    assert!(told.last().is_some_and(|read| read.as_ref().is_err_and(|e| e.contains("missing key"))), "{told:?}");
 }
 
 #[test]

@@ -12,8 +12,8 @@ pub mod widgets;
 use super::panels::area;
 use super::{Reply, Request, Screen, style};
 use crate::assets::atmosphere::keys;
-use crate::assets::draft::{self, Draft};
-use crate::assets::fields::{Field, Kind};
+use crate::assets::draft::{self, Draft, Place};
+use crate::assets::fields::{self, Field, Kind};
 use egui::{Align2, CollapsingHeader, RichText, ScrollArea, Slider, Ui};
 use serde_json::{Map, Value, json};
 use widgets::Done;
@@ -35,14 +35,16 @@ pub struct Editor {
     pub changed: bool,
     /// Settings that a model has where the file leaves them out, as JSON.
     pub defaults: Value,
-    /// Radius of the body, m.
-    pub radius_m: f64,
+    /// Where the ship is: what is added is added there.
+    pub place: Place,
+    /// Everything is to be unfolded, or folded, in the next frame.
+    pub fold: Option<bool>,
 }
 
 impl Editor {
     /// Begins with a draft.
-    pub fn enter(&mut self, draft: Draft, radius_m: f64, defaults: Value) {
-        *self = Self { draft: Some(draft), changed: true, radius_m, defaults, ..Self::default() };
+    pub fn enter(&mut self, draft: Draft, place: Place, defaults: Value) {
+        *self = Self { draft: Some(draft), changed: true, place, defaults, ..Self::default() };
     }
 }
 
@@ -64,6 +66,11 @@ pub fn show(ctx: &egui::Context, editor: &mut Editor, body: &str, screen: &mut S
                 if ui.button("Close").clicked() {
                     *screen = Screen::Flight;
                 }
+                for (word, open) in [("Unfold", true), ("Fold", false)] {
+                    if ui.button(word).on_hover_text("all layers, banks of fog and tables").clicked() {
+                        editor.fold = Some(open);
+                    }
+                }
             });
             ui.horizontal(|ui| {
                 ui.label("clock, h");
@@ -83,7 +90,7 @@ pub fn show(ctx: &egui::Context, editor: &mut Editor, body: &str, screen: &mut S
                 .auto_shrink([false, true])
                 .show(ui, |ui| {
                     ui.spacing_mut().slider_width = 150.0;
-                    contents(ui, &mut now, &editor.defaults, editor.radius_m)
+                    contents(ui, &mut now, &editor.defaults, editor.place, editor.fold.take())
                 });
             if done.inner.changed || !done.inner.held {
                 draft.step(now, done.inner.held);
@@ -132,14 +139,14 @@ fn told(ui: &mut Ui, editor: &Editor) {
     }
 }
 
-/// All of the file.
-fn contents(ui: &mut Ui, now: &mut Value, defaults: &Value, radius_m: f64) -> Done {
+/// All of the file. `fold` opens all that can be folded, or closes it.
+fn contents(ui: &mut Ui, now: &mut Value, defaults: &Value, place: Place, fold: Option<bool>) -> Done {
     let mut done = Done::default();
     let Some(values) = now.as_object_mut() else { return done };
     if values.is_empty() {
         ui.label(style::note("This body has no air."));
         if ui.button("Give it an air").clicked() {
-            *now = draft::first_air(radius_m);
+            *now = draft::first_air(place.radius_m);
             done.changed = true;
         }
         return done;
@@ -150,17 +157,17 @@ fn contents(ui: &mut Ui, now: &mut Value, defaults: &Value, radius_m: f64) -> Do
         let chosen = widgets::choice(ui, "model", keys::MODELS, &mut model);
         if chosen.changed {
             values.insert("model".to_owned(), model.clone());
+            draft::fill(values, model.as_str().unwrap_or_default(), place.radius_m);
         }
         done.and(chosen);
     });
     let word = model.as_str().unwrap_or_default().to_owned();
-    let own = keys::ATMOSPHERE.iter().find(|f| f.key == word);
-    if let Some(Field { kind: Kind::Table(fields), .. }) = own
+    if let Some(Field { kind: Kind::Table(fields), .. }) = fields::find(keys::ATMOSPHERE, &word)
         && !fields.is_empty()
     {
-        CollapsingHeader::new(format!("[{word}]")).default_open(true).show(ui, |ui| {
+        CollapsingHeader::new(format!("[{word}]")).default_open(true).open(fold).show(ui, |ui| {
             let mut settings = values.get(&word).and_then(Value::as_object).cloned().unwrap_or_default();
-            let changed = widgets::table(ui, fields, &mut settings, &defaults[&word], &[]);
+            let changed = widgets::table(ui, &word, fields, &mut settings, &defaults[&word], &[]);
             if changed.changed {
                 if settings.is_empty() {
                     values.remove(&word);
@@ -171,46 +178,63 @@ fn contents(ui: &mut Ui, now: &mut Value, defaults: &Value, radius_m: f64) -> Do
             done.and(changed);
         });
     }
-    let models: Vec<&str> = keys::MODELS.iter().map(|m| m.0).chain(["model", "layers", "physics"]).collect();
-    done.and(widgets::table(ui, keys::ATMOSPHERE, values, &Value::Null, &models));
-    done.and(layers(ui, values));
-    CollapsingHeader::new("[physics]: what drags, once saved").show(ui, |ui| {
+    let models: Vec<&str> = keys::MODELS.iter().map(|m| m.0).chain(["model", "layers", "fog", "physics"]).collect();
+    done.and(widgets::table(ui, "", keys::ATMOSPHERE, values, &Value::Null, &models));
+    done.and(items(ui, values, &LAYERS, defaults, fold, |kind, name| named(draft::layer(kind), name)));
+    done.and(items(ui, values, &BANKS, defaults, fold, |_, name| draft::bank(place, name)));
+    CollapsingHeader::new("[physics]: what drags, once saved").open(fold).show(ui, |ui| {
         let others: Vec<&str> = keys::ATMOSPHERE.iter().map(|f| f.key).filter(|k| *k != "physics").collect();
-        done.and(widgets::table(ui, keys::ATMOSPHERE, values, &Value::Null, &others));
+        done.and(widgets::table(ui, "", keys::ATMOSPHERE, values, &Value::Null, &others));
     });
     done
 }
 
-/// The layers, each to be folded, and ways to add and to remove one.
-fn layers(ui: &mut Ui, values: &mut Map<String, Value>) -> Done {
+/// A list whose items are folded, and what can be added to it.
+struct List {
+    key: &'static str,
+    fields: &'static [Field],
+    /// What an item without a name is called.
+    word: &'static str,
+    add: &'static str,
+    kinds: &'static [&'static str],
+}
+
+const LAYERS: List = List { key: "layers", fields: keys::LAYER, word: "layer", add: "Add a layer:", kinds: &draft::LAYERS };
+const BANKS: List = List { key: "fog", fields: keys::FOG, word: "bank of fog", add: "Add ahead of the ship:", kinds: &["bank of fog"] };
+
+/// The items of a list, each to be folded, and ways to add and to remove one.
+fn items(
+    ui: &mut Ui,
+    values: &mut Map<String, Value>,
+    list: &List,
+    defaults: &Value,
+    fold: Option<bool>,
+    new: impl Fn(&str, &str) -> Value,
+) -> Done {
     let mut done = Done::default();
     let mut gone = None;
-    if let Some(list) = values.get_mut("layers").and_then(Value::as_array_mut) {
-        for (i, layer) in list.iter_mut().enumerate() {
-            let Some(layer) = layer.as_object_mut() else { continue };
-            let name = layer.get("name").and_then(Value::as_str).map_or_else(|| format!("layer {i}"), str::to_owned);
-            CollapsingHeader::new(name).id_salt(("layer", i)).show(ui, |ui| {
-                // Of the ways to describe a layer only the one that is taken has sliders.
-                let absent: Vec<&str> = ["gas", "aerosol", "absorber", "table"].into_iter().filter(|k| !layer.contains_key(*k)).collect();
-                let by_coefficients = absent.len() == 4;
-                let but: Vec<&str> =
-                    absent.into_iter().chain(["scattering_per_m", "absorption_per_m"].into_iter().filter(|_| !by_coefficients)).collect();
-                done.and(widgets::table(ui, keys::LAYER, layer, &Value::Null, &but));
-                if ui.button("Remove this layer").clicked() {
-                    gone = Some(i);
-                }
-            });
-        }
+    for (i, item) in values.get_mut(list.key).and_then(Value::as_array_mut).into_iter().flatten().enumerate() {
+        let Some(item) = item.as_object_mut() else { continue };
+        let name = item.get("name").and_then(Value::as_str).map_or_else(|| format!("{} {i}", list.word), str::to_owned);
+        CollapsingHeader::new(name).id_salt((list.key, i)).open(fold).show(ui, |ui| {
+            done.and(widgets::table(ui, list.key, list.fields, item, defaults, &[]));
+            if ui.button("Remove").on_hover_text(format!("this {}", list.word)).clicked() {
+                gone = Some(i);
+            }
+        });
     }
-    if let (Some(i), Some(list)) = (gone, values.get_mut("layers").and_then(Value::as_array_mut)) {
-        list.remove(i);
+    if let (Some(i), Some(all)) = (gone, values.get_mut(list.key).and_then(Value::as_array_mut)) {
+        all.remove(i);
+        if all.is_empty() && list.key == BANKS.key {
+            values.remove(list.key);
+        }
         done.changed = true;
     }
     ui.horizontal(|ui| {
-        ui.label("Add a layer:");
-        for kind in draft::LAYERS {
-            if ui.button(kind).clicked() {
-                add(values, kind);
+        ui.label(list.add);
+        for kind in list.kinds {
+            if ui.button(*kind).clicked() {
+                add(values, list.key, kind, &new);
                 done.changed = true;
             }
         }
@@ -218,17 +242,19 @@ fn layers(ui: &mut Ui, values: &mut Map<String, Value>) -> Done {
     done
 }
 
-/// Appends a layer under a name that is free.
-fn add(values: &mut Map<String, Value>, kind: &str) {
-    let list = values.entry("layers").or_insert_with(|| json!([]));
+/// Appends an item under a name that is free.
+fn add(values: &mut Map<String, Value>, key: &str, kind: &str, new: impl Fn(&str, &str) -> Value) {
+    let list = values.entry(key).or_insert_with(|| json!([]));
     let Some(list) = list.as_array_mut() else { return };
     let taken = |name: &str| list.iter().any(|l| l.get("name").and_then(Value::as_str) == Some(name));
-    let name = (1..).map(|n| if n == 1 { kind.to_owned() } else { format!("{kind}_{n}") }).find(|n| !taken(n));
-    let mut layer = draft::layer(kind);
-    if let (Some(name), Some(layer)) = (name, layer.as_object_mut()) {
-        layer.insert("name".to_owned(), name.into());
-    }
-    list.push(layer);
+    let word = kind.replace(' ', "_");
+    let name = (1..).map(|n| if n == 1 { word.clone() } else { format!("{word}_{n}") }).find(|n| !taken(n)).unwrap_or(word);
+    list.push(new(kind, &name));
+}
+
+fn named(mut item: Value, name: &str) -> Value {
+    item["name"] = name.into();
+    item
 }
 
 #[cfg(test)]

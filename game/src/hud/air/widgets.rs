@@ -1,7 +1,8 @@
 //! Widgets of the editor of airs: made of the same [`fields`](crate::assets::fields) by which the file is read, so that every key of the
 //! file has one. Values are JSON, as in a draft. Channels are named by letters, not by colours alone.
 
-use crate::assets::fields::{Field, Kind, Span, Variant};
+use crate::assets::draft;
+use crate::assets::fields::{Field, Kind, Span, Variant, Ways};
 use crate::hud::style;
 use egui::{ComboBox, DragValue, RichText, Slider, Ui};
 use serde_json::{Map, Value, json};
@@ -35,25 +36,70 @@ impl Done {
     }
 }
 
-/// All fields of a table, but for those in `but`. `defaults` are the values that hold where a key is left out, as far as they are known.
-pub fn table(ui: &mut Ui, fields: &'static [Field], values: &mut Map<String, Value>, defaults: &Value, but: &[&str]) -> Done {
+/// All fields of the table at a path of the file, but for those in `but`; of a table that can be filled in several ways, those of the way
+/// that is taken, and a choice of it. `defaults` are the values that hold where a key is left out, as far as they are known.
+pub fn table(ui: &mut Ui, path: &str, fields: &'static [Field], values: &mut Map<String, Value>, defaults: &Value, but: &[&str]) -> Done {
     let mut done = Done::default();
-    for field in fields.iter().filter(|f| !but.contains(&f.key)) {
+    let mut hidden: Vec<&str> = but.to_vec();
+    if let Some(ways) = draft::ways(path) {
+        done.and(way(ui, path, ways, fields, values));
+        hidden.extend(ways.apart.iter().copied().filter(|key| !values.contains_key(*key)));
+    }
+    for field in fields.iter().filter(|f| !hidden.contains(&f.key)) {
         let default = defaults.get(field.key).cloned().unwrap_or(Value::Null);
-        done.and(entry(ui, field, values, &default));
+        done.and(entry(ui, &below(path, field.key), field, values, &default));
     }
     done
 }
 
-fn entry(ui: &mut Ui, field: &'static Field, values: &mut Map<String, Value>, default: &Value) -> Done {
+fn below(path: &str, key: &str) -> String {
+    if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") }
+}
+
+/// What a key begins with.
+fn begin(path: &str, field: &Field) -> Value {
+    draft::first(path).unwrap_or_else(|| initial(&field.kind))
+}
+
+/// A choice among the ways to fill a table. What the new way needs and is not there begins with values of its own.
+fn way(ui: &mut Ui, path: &str, ways: &'static Ways, fields: &'static [Field], values: &mut Map<String, Value>) -> Done {
+    let mut done = Done::default();
+    let label = |way: &&[&str]| way.iter().filter(|key| ways.apart.contains(*key)).copied().collect::<Vec<_>>().join(" + ");
+    // The way of which most is there and nothing is missing.
+    let there = |way: &&&[&str]| way.iter().filter(|key| ways.apart.contains(*key)).all(|key| values.contains_key(*key));
+    let taken = ways.each.iter().find(there);
+    let mut chosen = None;
+    ui.horizontal(|ui| {
+        ui.label(style::note("given by"));
+        ComboBox::from_id_salt((path, "way")).width(300.0).selected_text(taken.map_or_else(|| "?".to_owned(), label)).show_ui(ui, |ui| {
+            for way in ways.each {
+                if ui.selectable_label(taken.is_some_and(|t| t == way), label(way)).clicked() && taken.is_none_or(|t| t != way) {
+                    chosen = Some(way);
+                }
+            }
+        });
+    });
+    if let Some(way) = chosen {
+        values.retain(|key, _| way.contains(&key.as_str()) || !ways.apart.contains(&key.as_str()));
+        for field in fields.iter().filter(|f| way.contains(&f.key)) {
+            values.entry(field.key).or_insert_with(|| begin(&below(path, field.key), field));
+        }
+        done.click();
+    }
+    done
+}
+
+fn entry(ui: &mut Ui, path: &str, field: &'static Field, values: &mut Map<String, Value>, default: &Value) -> Done {
     let mut done = Done::default();
     let nested = matches!(field.kind, Kind::Table(_) | Kind::Variants(_) | Kind::Tables(_) | Kind::Shares(_));
     if !values.contains_key(field.key) {
+        // Of a table the values in force are no value to begin with: it would hold all keys.
+        let default = if nested { &Value::Null } else { default };
         ui.horizontal(|ui| {
             key(ui, field);
             let hint = if default.is_null() { "left out".to_owned() } else { format!("left out: {}", short(default)) };
             if ui.button("Set").on_hover_text(field.doc).clicked() {
-                values.insert(field.key.to_owned(), if default.is_null() { initial(&field.kind) } else { default.clone() });
+                values.insert(field.key.to_owned(), if default.is_null() { begin(path, field) } else { default.clone() });
                 done.click();
             }
             ui.label(style::note(hint));
@@ -67,11 +113,11 @@ fn entry(ui: &mut Ui, field: &'static Field, values: &mut Map<String, Value>, de
             key(ui, field);
             leave_out = !field.must && ui.small_button("Leave out").clicked();
         });
-        ui.indent(field.key, |ui| done.and(widget(ui, field, value)));
+        ui.indent(field.key, |ui| done.and(widget(ui, path, field, value, default)));
     } else {
         ui.horizontal(|ui| {
             key(ui, field);
-            done.and(widget(ui, field, value));
+            done.and(widget(ui, path, field, value, default));
             leave_out = !field.must && ui.small_button("×").on_hover_text("leave out").clicked();
         });
     }
@@ -92,7 +138,7 @@ fn key(ui: &mut Ui, field: &Field) {
 }
 
 /// The widget of a value that is there. A value of another kind than it should have begins anew.
-fn widget(ui: &mut Ui, field: &'static Field, value: &mut Value) -> Done {
+fn widget(ui: &mut Ui, path: &str, field: &'static Field, value: &mut Value, default: &Value) -> Done {
     let mut done = Done::default();
     match &field.kind {
         Kind::Number(span) => done.and(number(ui, span, value, "")),
@@ -132,9 +178,9 @@ fn widget(ui: &mut Ui, field: &'static Field, value: &mut Value) -> Done {
             }
         }
         Kind::Choice(words) => done.and(choice(ui, field.key, words, value)),
-        Kind::Table(fields) => done.and(inside(ui, fields, value)),
-        Kind::Variants(variants) => done.and(variant(ui, field.key, variants, value)),
-        Kind::Tables(fields) => done.and(list(ui, fields, value)),
+        Kind::Table(fields) => done.and(inside(ui, path, fields, value, default)),
+        Kind::Variants(variants) => done.and(variant(ui, path, variants, value)),
+        Kind::Tables(fields) => done.and(list(ui, path, fields, value)),
         Kind::Shares(names) => {
             if !value.is_object() {
                 *value = json!({});
@@ -161,11 +207,11 @@ fn widget(ui: &mut Ui, field: &'static Field, value: &mut Value) -> Done {
 }
 
 /// A table inside; what is none begins anew as one.
-fn inside(ui: &mut Ui, fields: &'static [Field], value: &mut Value) -> Done {
+fn inside(ui: &mut Ui, path: &str, fields: &'static [Field], value: &mut Value, defaults: &Value) -> Done {
     if !value.is_object() {
         *value = json!({});
     }
-    value.as_object_mut().map_or_else(Done::default, |values| table(ui, fields, values, &Value::Null, &[]))
+    value.as_object_mut().map_or_else(Done::default, |values| table(ui, path, fields, values, defaults, &[]))
 }
 
 #[allow(clippy::cast_possible_truncation)]
@@ -262,11 +308,11 @@ pub fn choice(ui: &mut Ui, id: &str, words: &[(&'static str, &'static str)], val
 }
 
 /// The `kind` of a table, and the keys that it then has. Keys that both kinds have are kept.
-fn variant(ui: &mut Ui, id: &str, variants: &'static [Variant], value: &mut Value) -> Done {
+fn variant(ui: &mut Ui, path: &str, variants: &'static [Variant], value: &mut Value) -> Done {
     let mut done = Done::default();
     let words: Vec<(&'static str, &'static str)> = variants.iter().map(|v| (v.word, v.doc)).collect();
     let mut kind = value.get("kind").cloned().unwrap_or(Value::Null);
-    done.and(choice(ui, id, &words, &mut kind));
+    done.and(choice(ui, path, &words, &mut kind));
     let Some(variant) = variants.iter().find(|v| kind.as_str() == Some(v.word)) else { return done };
     if done.changed {
         let before = value.as_object().cloned().unwrap_or_default();
@@ -275,18 +321,18 @@ fn variant(ui: &mut Ui, id: &str, variants: &'static [Variant], value: &mut Valu
         for field in variant.fields {
             match before.get(field.key) {
                 Some(kept) => drop(now.insert(field.key.to_owned(), kept.clone())),
-                None if field.must => drop(now.insert(field.key.to_owned(), initial(&field.kind))),
+                None if field.must => drop(now.insert(field.key.to_owned(), begin(&below(path, field.key), field))),
                 None => {}
             }
         }
         *value = Value::Object(now);
     }
-    done.and(inside(ui, variant.fields, value));
+    done.and(inside(ui, path, variant.fields, value, &Value::Null));
     done
 }
 
 /// A list of small tables: stretches of lapse.
-fn list(ui: &mut Ui, fields: &'static [Field], value: &mut Value) -> Done {
+fn list(ui: &mut Ui, path: &str, fields: &'static [Field], value: &mut Value) -> Done {
     let mut done = Done::default();
     if !value.is_array() {
         *value = json!([]);
@@ -294,10 +340,12 @@ fn list(ui: &mut Ui, fields: &'static [Field], value: &mut Value) -> Done {
     let Some(items) = value.as_array_mut() else { return done };
     let mut gone = None;
     for (i, item) in items.iter_mut().enumerate() {
-        ui.push_id(i, |ui| done.and(inside(ui, fields, item)));
-        if ui.small_button("Take out").clicked() {
-            gone = Some(i);
-        }
+        ui.push_id(i, |ui| {
+            done.and(inside(ui, path, fields, item, &Value::Null));
+            if ui.small_button("Take out").clicked() {
+                gone = Some(i);
+            }
+        });
     }
     if let Some(i) = gone {
         items.remove(i);

@@ -10,6 +10,7 @@ use super::ahead::Ahead;
 use super::canvas::Canvas;
 use super::clock::Clock;
 use super::flight::{self, Flight};
+use super::follow::Follow;
 use super::job::{Job, Outcome};
 use super::{Opening, refuse};
 use crate::cli::{Backend, DEFAULT_START};
@@ -70,7 +71,7 @@ pub struct App {
     flight: Option<Flight>,
     /// The paths of the flight's bodies, being worked out.
     ahead: Option<Ahead>,
-    watch: watch::Watch,
+    watch: Follow,
     /// The flight's system with the edited air: drawn, never flown.
     trial: Option<Arc<System>>,
     clicked: Vec<Action>,
@@ -121,7 +122,7 @@ impl App {
             eclipses: None,
             flight: None,
             ahead: None,
-            watch: watch::Watch::default(),
+            watch: Follow::default(),
             trial: None,
             clicked: Vec::new(),
             clock: Clock::default(),

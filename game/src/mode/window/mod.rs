@@ -1,13 +1,15 @@
 //! `syzygy play`: the window. Wall-clock time enters here ([`clock`]) and nowhere else.
 //!
 //! [`app`] is the loop, [`canvas`] the window with its device, [`flight`] the session with its camera and saves, [`job`]
-//! the work beside it, [`ahead`] the paths of the bodies worked out beside it. Not here: what panels look like ([`crate::hud`]), what keys mean ([`crate::input`]).
+//! the work beside it, [`ahead`] the paths of the bodies worked out beside it, [`follow`] the files that
+//! change meanwhile. Not here: what panels look like ([`crate::hud`]), what keys mean ([`crate::input`]).
 
 mod ahead;
 mod app;
 pub mod canvas;
 pub mod clock;
 mod flight;
+pub mod follow;
 pub mod job;
 
 use super::places;

@@ -2,7 +2,7 @@
 
 use super::App;
 use crate::assets::atmosphere::Datum;
-use crate::assets::draft::{Draft, Target};
+use crate::assets::draft::{Draft, Place, Target};
 use crate::hud::Screen;
 use engine::air::Model;
 use engine::air::model::{Gradient, LimbTable, Physical, Thickness, ViewTable};
@@ -22,7 +22,15 @@ impl App {
         let target = if self.opening.args.edit_assets { Target::Assets } else { Target::Mod };
         match Draft::open(&self.opening.assets.overlay, &body.key, target) {
             Ok(draft) => {
-                self.hud.air.enter(draft, body.radius_m, defaults());
+                let readout = &flight.readout;
+                let place = Place {
+                    lat_lon_rad: readout.lat_lon_rad,
+                    heading_rad: readout.heading_pitch_roll_rad[0],
+                    altitude_m: readout.altitude_m,
+                    ground_m: readout.ground_m,
+                    radius_m: body.radius_m,
+                };
+                self.hud.air.enter(draft, place, defaults());
                 self.hud.screen = Screen::Air;
             }
             Err(errors) => self.hud.message = Some(errors.lines()),
