@@ -6,10 +6,10 @@
 use engine::air::reference::Options;
 use engine::air::{Layer, Medium, Phase, Profile};
 use engine::gpu::{BackendChoice, Gpu, ShaderLibrary};
+use engine::render::sky_bench::Planet;
 use engine::render::sky_bench::front::{Effort, Entrant, Watch, entrants, run};
 use engine::render::sky_bench::truth::{HEADER, compute, lines, read};
 use engine::render::sky_bench::view::{GRID, VIEWS, View};
-use engine::render::sky_bench::Planet;
 use engine::units::{DEG, KM};
 use glam::Vec3;
 use std::error::Error;
@@ -65,7 +65,13 @@ fn main() -> Result<(), Box<dyn Error>> {
         let all = row.all;
         println!(
             "{star} {:14} {:28} {:9.1} {:8.1} {:6.2} {:7.2} {:7.1}",
-            row.model, row.setting, row.rebuild_ms, all.ms, all.time, 100.0 * all.rms, 100.0 * all.worst
+            row.model,
+            row.setting,
+            row.rebuild_ms,
+            all.ms,
+            all.time,
+            100.0 * all.rms,
+            100.0 * all.worst
         );
         for (what, of) in [("ms", 0), ("time", 1), ("rms %", 2), ("worst %", 3)] {
             let cells = row.views.iter().map(|v| [v.ms, v.time, 100.0 * v.rms, 100.0 * v.worst][of]);

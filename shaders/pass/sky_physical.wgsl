@@ -18,7 +18,7 @@ struct Half {
 // Of its colour, how much a pixel may differ from those around it and still take their mean. What varies evenly by this much is then
 // right to an eighth of its square, 1e-3; the bend of an edge to a quarter, 2 %, on a line one pixel wide.
 const AGREE: f32 = 0.08;
-// Optical depth between a pixel's surface and the nearest or farthest of those around it.
+// Optical depth between a pixel's surface and the mean of those around it.
 const AGREE_DEPTH: f32 = 0.01;
 
 // By the air's own medium, or by its two band media; in the star's light and the second one.
@@ -88,8 +88,9 @@ fn merge(in: Varying) -> @location(0) vec4<f32> {
     } else {
         let own = view.surface;
         let stretch = own * textureLoad(depth, pixel, 0);
-        let apart = abs(stretch / max(depths, vec4<f32>(1e-30)) - own);
-        fine &= all(apart * sky.settings[0].x < vec4<f32>(AGREE_DEPTH));
+        // Stored depth is linear on a plane: ground that stretches away from the eye is between those around it.
+        let apart = abs(stretch / max(dot(depths, vec4<f32>(0.25)), 1e-30) - own);
+        fine &= all(depths > vec4<f32>(0.0)) && apart * sky.settings[0].x < AGREE_DEPTH;
     }
 
     // A loop of one turn or none, and not a branch: where a processor stands in for a GPU it takes both sides of a branch.

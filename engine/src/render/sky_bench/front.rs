@@ -164,7 +164,13 @@ pub struct Watch<'a> {
 /// # Errors
 /// A shader that does not compile, a device that fails.
 pub fn run(
-    gpu: &Gpu, shaders: &ShaderLibrary, planet: &Planet, truths: &[Truth], entrants: &[Entrant], effort: Effort, watch: &Watch<'_>,
+    gpu: &Gpu,
+    shaders: &ShaderLibrary,
+    planet: &Planet,
+    truths: &[Truth],
+    entrants: &[Entrant],
+    effort: Effort,
+    watch: &Watch<'_>,
 ) -> Result<Vec<Row>, RenderError> {
     let size_px = GRID.map(|n| n * effort.scale);
     let mut bench = SkyBench::new(gpu, shaders, size_px, planet)?;
@@ -205,7 +211,8 @@ pub fn run(
         Technique::Model(Model::Physical(_)) => tables_ms,
         _ => prepared[of[e]].own_ms,
     };
-    let mut rows: Vec<Row> = (0..entrants.len()).map(|e| row(planet, &entrants[e], size_px, rebuild(e), &ms[e], &ms[0], &light[e])).collect();
+    let mut rows: Vec<Row> =
+        (0..entrants.len()).map(|e| row(planet, &entrants[e], size_px, rebuild(e), &ms[e], &ms[0], &light[e])).collect();
     let places: Vec<(f64, f64)> = rows.iter().map(|r| (r.all.ms, r.all.rms)).collect();
     for (row, at) in rows.iter_mut().zip(&places) {
         row.on_front = !places.iter().any(|p| (p.0 < at.0 && p.1 <= at.1) || (p.0 <= at.0 && p.1 < at.1));

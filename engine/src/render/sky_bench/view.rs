@@ -1,6 +1,6 @@
 //! Views that a bench draws, and the rays of their pixels: one eye over a bare planet under one sun, for models and for the reference alike.
 
-use crate::air::reference::Ray;
+use crate::air::reference::{Ray, optical_depth, span};
 use crate::air::{Air, Medium};
 use crate::scene::{AutoOr, Body, Camera, Force, Snapshot, Star, Surface};
 use crate::space::relative::{narrow, narrow3};
@@ -11,6 +11,9 @@ use glam::{DVec3, Mat3, Quat, Vec3};
 pub const GRID: [u32; 2] = [160, 90];
 /// The smallest picture whose errors are asked for, in pixels of the grid.
 const COARSEST: f64 = 3.0;
+
+/// Optical depth, in every channel, of a ray that judges: over less, the ground is seen and not the air, and its little light is nobody's aim.
+const SEEN: f64 = 0.01;
 
 /// The light of a view, by which errors are grouped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -143,8 +146,8 @@ impl View {
         }
     }
 
-    /// Pixels of the grid whose rays are judged, `count` at most, spread over the picture: those that meet air, and for which one ray
-    /// stands in every picture. Where an edge of the ground or of the air parts a pixel, pictures hold a mean over it.
+    /// Pixels of the grid whose rays are judged, `count` at most, spread over the picture: those that meet so much air that it is seen
+    /// ([`SEEN`]), and for which one ray stands in every picture. Where an edge of the ground or of the air parts a pixel, pictures hold a mean over it.
     pub fn judged(&self, medium: &Medium, count: usize) -> Vec<[u32; 2]> {
         let [w, h] = GRID.map(f64::from);
         // Steps of the plastic number's powers fill a square evenly [Roberts 2018, "The Unreasonable Effectiveness of Quasirandom Sequences"].
@@ -153,11 +156,17 @@ impl View {
         let pixels = (0..1000).map(place).map(|[x, y]| [(x * w) as u32, (y * h) as u32]);
         let mut out: Vec<[u32; 2]> = Vec::new();
         for pixel in pixels {
-            if out.len() < count && !out.contains(&pixel) && self.one_ray(medium, pixel) {
+            if out.len() < count && !out.contains(&pixel) && self.one_ray(medium, pixel) && self.sees_air(medium, pixel) {
                 out.push(pixel);
             }
         }
         out
+    }
+
+    fn sees_air(&self, medium: &Medium, pixel: [u32; 2]) -> bool {
+        let ray = self.ray(medium, 0.0, pixel);
+        span(medium, ray.from_m, ray.direction)
+            .is_some_and(|s| optical_depth(medium, ray.from_m, ray.direction, (s.near_m, s.far_m), 1e-3).min_element() > SEEN)
     }
 
     fn one_ray(&self, medium: &Medium, pixel: [u32; 2]) -> bool {
@@ -174,7 +183,11 @@ impl View {
         if low > top - margin && eye > top {
             return false;
         }
-        let far = along + libm::sqrt(((medium.bottom_radius_m + top) * (medium.bottom_radius_m + top) - ray.from_m.cross(ray.direction).length_squared()).max(0.0));
+        let far = along
+            + libm::sqrt(
+                ((medium.bottom_radius_m + top) * (medium.bottom_radius_m + top) - ray.from_m.cross(ray.direction).length_squared())
+                    .max(0.0),
+            );
         let thin = eye > top && angle * far > 0.05 * top;
         low.abs() > margin && !(thin && low > -2.0 * angle * far)
     }
@@ -205,7 +218,7 @@ mod tests {
                 .iter()
                 .map(|p| {
                     let ray = view.ray(&medium, 0.0047, *p);
-                    crate::air::reference::span(&medium, ray.from_m, ray.direction).expect("it meets air")
+                    span(&medium, ray.from_m, ray.direction).expect("it meets air")
                 })
                 .collect();
             let ground = spans.iter().filter(|s| s.hits_ground).count();
