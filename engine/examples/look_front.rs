@@ -57,7 +57,8 @@ fn main() -> Result<(), Box<dyn Error>> {
             eprintln!("{e}");
         }
     };
-    let watch = Watch { note: &|what| eprintln!("{what}"), picture: &picture };
+    let watch =
+        Watch { note: &|what| eprintln!("{what}"), picture: &picture, clock: &|| cpu_time::ProcessTime::now().as_duration().as_secs_f64() };
     let rows = run(&gpu, &ShaderLibrary::checkout(), &planet, &truths, &wanted, effort, &watch)?;
     println!("{:45} {:>9} {:>8} {:>6} {:>7} {:>7}", VIEWS.map(|v| v.name).join(" "), "rebuild", "ms", "time", "rms %", "worst %");
     for row in rows {

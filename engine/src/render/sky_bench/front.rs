@@ -6,7 +6,7 @@
 
 use super::truth::Truth;
 use super::view::{GRID, Light, VIEWS, View};
-use super::{Planet, Setting, SkyBench, Technique};
+use super::{Clock, Planet, Setting, SkyBench, Technique};
 use crate::air::Model;
 use crate::air::model::{Gradient, LimbTable, Physical, Thickness, ViewTable};
 use crate::gpu::{Gpu, ShaderLibrary};
@@ -157,6 +157,8 @@ pub struct Watch<'a> {
     pub note: &'a dyn Fn(&str),
     /// Shown each picture once: radiances, sr⁻¹, RGBA row by row.
     pub picture: &'a dyn Fn(&Entrant, &View, &[f32]),
+    /// The time of this process, where a processor stands in for a GPU.
+    pub clock: Clock<'a>,
 }
 
 /// Measures `entrants` on a planet; the first is the yardstick.
@@ -173,7 +175,7 @@ pub fn run(
     watch: &Watch<'_>,
 ) -> Result<Vec<Row>, RenderError> {
     let size_px = GRID.map(|n| n * effort.scale);
-    let mut bench = SkyBench::new(gpu, shaders, size_px, planet)?;
+    let mut bench = SkyBench::new(gpu, shaders, size_px, planet, watch.clock)?;
     let mut techniques: Vec<&Technique> = Vec::new();
     let mut prepared = Vec::new();
     let mut of = Vec::new();

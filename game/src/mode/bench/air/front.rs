@@ -12,6 +12,7 @@ use crate::mode::Error;
 use crate::mode::bench::orbit_rows::{self, RowsError};
 use crate::mode::shot::ShotError;
 use crate::mode::studio::StudioError;
+use cpu_time::ProcessTime;
 use engine::air::reference::Options;
 use engine::gpu::{BackendChoice, Gpu};
 use engine::render::RendererOptions;
@@ -45,7 +46,11 @@ pub fn run(args: &BenchAirArgs) -> Result<(), Error> {
     };
     let gpu = Gpu::headless(BackendChoice::Auto).map_err(|e| failed(e.into()))?;
     let bar = indicatif::ProgressBar::new_spinner();
-    let watch = Watch { note: &|what| bar.set_message(what.to_owned()), picture: &|_, _, _| () };
+    let watch = Watch {
+        note: &|what| bar.set_message(what.to_owned()),
+        picture: &|_, _, _| (),
+        clock: &|| ProcessTime::now().as_duration().as_secs_f64(),
+    };
     // Pictures are made of odd multiples of the grid.
     let effort = Effort { scale: args.scale | 1, rounds: args.rounds };
     let mut rows = Vec::new();
