@@ -105,30 +105,35 @@ pub struct Effort {
 pub fn yardstick() -> Entrant {
     Entrant {
         family: "physical",
-        label: format!("{STEPS} points, half rate"),
+        label: format!("{STEPS} points"),
         technique: Technique::Model(Model::Physical(Physical::default())),
-        setting: Setting { steps: STEPS, every_pixel: false },
+        setting: Setting { steps: STEPS, every_pixel: false, agree: None },
         fitted: false,
     }
 }
 
 /// All that enter, the yardstick first.
 pub fn entrants() -> Vec<Entrant> {
-    let physical = |steps, every_pixel| Entrant {
-        label: format!("{steps} points, {}", if every_pixel { "every pixel" } else { "half rate" }),
-        setting: Setting { steps, every_pixel },
+    let physical = |steps, agree: Option<f32>| Entrant {
+        label: match agree {
+            Some(a) if a > 0.0 => format!("{steps} points, agreeing to {a}"),
+            Some(_) => format!("{steps} points, every pixel"),
+            None => format!("{steps} points"),
+        },
+        setting: Setting { steps, every_pixel: agree == Some(0.0), agree },
         ..yardstick()
     };
     let one = |family, label: &str, technique, steps, every_pixel| Entrant {
         family,
         label: label.to_owned(),
         technique,
-        setting: Setting { steps, every_pixel },
+        setting: Setting { steps, every_pixel, agree: None },
         fitted: false,
     };
     let mut all = vec![yardstick()];
-    all.extend([4, 8, 16, 24, 48].map(|n| physical(n, false)));
-    all.extend([4, 8, 12, 24, 48].map(|n| physical(n, true)));
+    all.extend([4, 8, 24, 48].map(|n| physical(n, None)));
+    all.extend([(4, 1.0), (4, 0.4), (8, 0.4), (12, 0.3), (12, 0.08)].map(|(n, a)| physical(n, Some(a))));
+    all.extend([4, 8, 12, 24, 48].map(|n| physical(n, Some(0.0))));
     for (steps, march) in [(4, false), (8, false), (14, false), (30, false), (60, false), (8, true), (16, true), (32, true), (64, true)] {
         let label = format!("{steps} steps, {}", if march { "marched" } else { "tables" });
         all.push(one("Hillaire 2020", &label, Technique::Hillaire, steps, march));

@@ -64,12 +64,14 @@ pub struct Prepared {
 }
 
 /// How a prepared painter draws.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Setting {
     /// Steps of a march.
     pub steps: u32,
-    /// March at every pixel: no half rate, no tables that hang on the eye.
+    /// March at every pixel: no means of pixels around, no tables that hang on the eye.
     pub every_pixel: bool,
+    /// In place of what `physical` has for how much pixels may differ and still agree.
+    pub agree: Option<f32>,
 }
 
 /// Tells the processor time of this process and all its threads so far, s.
@@ -164,7 +166,10 @@ impl<'a> SkyBench<'a> {
         self.shared.bodies.write(&gpu.queue, &BodiesUniform::new(&scene, |_| Some(0)));
         self.shared.write_exposure(gpu, &ExposureUniform::starting(PRE));
         let Some(body) = scene.bodies.first() else { return Err(RenderError::NothingDrawn) };
-        let settings = prepared.painter.settings_in(&scene, body, &prepared.air);
+        let mut settings = prepared.painter.settings_in(&scene, body, &prepared.air);
+        if let Some(agree) = setting.agree {
+            settings[0][3] = agree;
+        }
         self.uniform.write(&gpu.queue, &SkyUniform { ids: [0, setting.steps, 0, 0], settings });
         self.timer.begin_frame();
         let mut f = FrameContext {

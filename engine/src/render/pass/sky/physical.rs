@@ -2,7 +2,7 @@
 //!
 //! The march is made at every eighth pixel of every eighth row first, then at every fourth, second and one, where a pixel between four that agree
 //! takes their mean and any other marches by itself. Where another world's shadow may fall, which may be small, and where density jumps, the
-//! first is every second. A forced frame marches at every pixel: the two differ by the bound that the shader states at `AGREE`.
+//! first is every second. A forced frame marches at every pixel: the two differ by the bound that is stated at [`AGREE`].
 
 use super::{Draw, Painter, PainterKind, Parts, no_settings};
 use crate::air::{Air, Classes, Medium};
@@ -13,9 +13,14 @@ use crate::render::pipeline::{PipelineKind, Stencil, texture_entry};
 use crate::render::shared::FrameContext;
 use crate::render::targets::HDR;
 use crate::scene::Body;
-use crate::scene::gpu_data::SkySettings;
-use crate::space::relative::narrow;
+use crate::scene::gpu_data::{SkySettings, vec4};
+use crate::space::relative::narrow3;
+use glam::{DVec3, Vec3};
 use wgpu::{BindGroupEntry, BindingResource};
+
+/// Of its colour, how much a pixel may differ from those around it and still take their mean. What varies evenly by this much is then right to an
+/// eighth of its square, 3e-3; the bend of an edge to a quarter, 4 %, on a line one pixel wide.
+pub const AGREE: f32 = 0.16;
 
 /// What most airs do without: media that are tables, and shadows of other worlds.
 const PLAIN: [(&str, f64); 2] = [("MEDIA_TABLES", 0.0), ("AIR_ECLIPSES", 0.0)];
@@ -90,7 +95,7 @@ impl Painter for Physical {
     }
     fn settings(&self, _body: &Body, air: &Air) -> SkySettings {
         let mut all = no_settings();
-        all[0][0] = greatest_extinction(&air.medium);
+        all[0] = vec4(greatest_extinction(&air.medium), AGREE);
         all
     }
     fn group(&self, _id: u16) -> &wgpu::BindGroup {
@@ -139,8 +144,8 @@ fn group(gpu: &Gpu, layout: &wgpu::BindGroupLayout, views: [&wgpu::TextureView; 
     })
 }
 
-/// The greatest extinction of any channel between datum and top, m⁻¹.
-fn greatest_extinction(medium: &Medium) -> f32 {
+/// The greatest extinction between datum and top, m⁻¹.
+fn greatest_extinction(medium: &Medium) -> Vec3 {
     let altitudes = (0..64).map(|i| f64::from(i * i) / 3969.0 * medium.top_altitude_m);
-    narrow(altitudes.map(|h| medium.extinction(h).max_element()).fold(0.0, f64::max))
+    narrow3(altitudes.map(|h| medium.extinction(h)).fold(DVec3::ZERO, DVec3::max))
 }
