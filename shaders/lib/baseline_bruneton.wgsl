@@ -99,12 +99,12 @@ fn bruneton_at(air: Air, sizes: vec4<u32>, table: texture_3d<f32>, linear: sampl
 fn bruneton_between(
     air: Air, transmittance: texture_2d_array<f32>, linear: sampler, slot: i32, h: f32, mu: f32, there: f32, mu_there: f32, ground: bool,
 ) -> vec3<f32> {
-    var from = vec2<f32>(h, mu);
-    var to = vec2<f32>(there, mu_there);
+    var near = vec2<f32>(h, mu);
+    var far = vec2<f32>(there, mu_there);
     if ground {
-        from = vec2<f32>(there, -mu_there);
-        to = vec2<f32>(h, -mu);
+        near = vec2<f32>(there, -mu_there);
+        far = vec2<f32>(h, -mu);
     }
-    let all = air_sun_transmittance(air, transmittance, linear, slot, from.x, from.y);
-    return min(all / max(air_sun_transmittance(air, transmittance, linear, slot, to.x, to.y), vec3<f32>(1e-7)), vec3<f32>(1.0));
+    let all = air_sun_transmittance(air, transmittance, linear, slot, near.x, near.y);
+    return min(all / max(air_sun_transmittance(air, transmittance, linear, slot, far.x, far.y), vec3<f32>(1e-7)), vec3<f32>(1.0));
 }
