@@ -1,22 +1,12 @@
 // A baseline for `bench air`, not used by any picture: the sky after Hillaire 2020, as lib/baseline_hillaire.wgsl tells. Rust side:
 // engine/src/render/pass/baseline_hillaire_sky.rs.
 //
-// From within the air: `see` and `froxels` make the two tables that hang on the eye, `fragment` asks the one for pixels of the sky, the other
-// for ground in its reach, and marches to ground beyond. From space, or where `march` draws, it marches at every pixel.
+// From within the air: `see` and `froxels` make the two tables that hang on the eye, `by_tables` asks the one for pixels of the sky, the other
+// for ground in its reach, and marches to ground beyond. From space `fragment` (of pass/sky.wgsl) marches at every pixel.
 
-#include "lib/sky_draw.wgsl"
+#include "pass/sky.wgsl"
 #include "lib/baseline_hillaire.wgsl"
 
-@group(0) @binding(0) var<uniform> frame: Frame;
-@group(0) @binding(1) var<uniform> bodies: Bodies;
-@group(0) @binding(2) var<uniform> exposure: Exposure;
-@group(1) @binding(0) var<uniform> airs: Airs;
-@group(1) @binding(1) var transmittance: texture_2d_array<f32>;
-@group(1) @binding(4) var linear: sampler;
-@group(1) @binding(8) var media: texture_2d_array<f32>;
-@group(2) @binding(0) var opaque: texture_2d<f32>;
-@group(2) @binding(1) var depth: texture_depth_2d;
-@group(2) @binding(2) var<uniform> sky: Sky;
 @group(3) @binding(0) var multiple: texture_2d<f32>;
 @group(3) @binding(1) var seen: texture_2d<f32>;
 @group(3) @binding(2) var near: texture_3d<f32>;
@@ -68,42 +58,23 @@ fn froxels(@builtin(global_invocation_id) id: vec3<u32>) {
     }
 }
 
-fn marched(body: Body, air: Air, view: SkyView, steps: u32) -> AirLight {
+fn sky_light(body: Body, star: vec4<f32>, view: SkyView) -> AirLight {
+    let air = airs.list[u32(body.ids.z)];
     let path = air_path(air, body.up.xyz, body.up.w, view.ray);
-    let end = sky_end(path, view);
+    let end = sky_end(air, path, view);
     if end <= 0.0 {
         return AirLight(vec3<f32>(0.0), vec3<f32>(1.0));
     }
-    return hillaire_march(air, media, transmittance, multiple, linear, body.ids.z, path, end, view.ray, body.sun, steps);
+    return in_starlight(body, hillaire_march(air, media, transmittance, multiple, linear, body.ids.z, path, end, view.ray, body.sun, sky.ids.y));
 }
 
 @fragment
-fn march(in: Varying) -> @location(0) vec4<f32> {
-    let pixel = vec2<u32>(in.position.xy);
-    let body = bodies.list[sky.ids.x];
-    let air = airs.list[u32(body.ids.z)];
-    let view = sky_view_of(in.uv, pixel);
-    let rays = sky_rays(body, air, view);
-    var sum = AirLight(vec3<f32>(0.0), vec3<f32>(0.0));
-    for (var k = 0u; k < rays; k++) {
-        let light = marched(body, air, sky_across(body, view, k, rays), sky.ids.y);
-        sum.radiance += light.radiance;
-        sum.transmittance += light.transmittance;
-    }
-    return sky_over(textureLoad(opaque, pixel, 0).rgb, sum, rays, body, exposure);
-}
-
-fn sky_view_of(uv: vec2<f32>, pixel: vec2<u32>) -> SkyView {
-    return sky_view(frame, uv, textureLoad(depth, pixel, 0));
-}
-
-@fragment
-fn fragment(in: Varying) -> @location(0) vec4<f32> {
+fn by_tables(in: Varying) -> @location(0) vec4<f32> {
     let pixel = vec2<u32>(in.position.xy);
     let behind = textureLoad(opaque, pixel, 0).rgb;
     let body = bodies.list[sky.ids.x];
     let air = airs.list[u32(body.ids.z)];
-    let view = sky_view_of(in.uv, pixel);
+    let view = sky_view(frame, in.uv, textureLoad(depth, pixel, 0));
     if view.datum {
         let up = body.up.xyz;
         let mu = dot(view.ray, up);
@@ -119,5 +90,5 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
         let weight = min(2.0 * w * f32(HILLAIRE_FROXELS), 1.0);
         return vec4<f32>(to_hdr(behind * mix(1.0, cell.a, weight) + cell.rgb * weight, 1.0), 1.0);
     }
-    return sky_over(behind, marched(body, air, view, sky.ids.y), 1u, body, exposure);
+    return sky_over(behind, sky_light(body, frame.star, view), 1u, exposure);
 }

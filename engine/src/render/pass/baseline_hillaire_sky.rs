@@ -27,7 +27,7 @@ const FILE: &str = "pass/baseline_hillaire_sky.wgsl";
 /// The painter.
 struct Hillaire {
     kind: PainterKind,
-    march: wgpu::RenderPipeline,
+    by_tables: wgpu::RenderPipeline,
     see: wgpu::ComputePipeline,
     froxels: wgpu::ComputePipeline,
     baker: HillaireBaker,
@@ -48,7 +48,7 @@ pub fn make(parts: &Parts<'_>, tables: &AirTables) -> Result<Box<dyn Painter>, R
     let own = [texture_entry(0, flat), texture_entry(1, flat), texture_entry(2, solid)];
     let kind = PainterKind::new(parts, FILE, &own)?;
     let groups = [&shared.frame_layout, &shared.light_layout, picture, &kind.own_layout];
-    let march = PipelineKind { entry: "march", ..PipelineKind::full_screen("sky", &kind.module, &groups, HDR) }.make(gpu);
+    let by_tables = PipelineKind { entry: "by_tables", ..PipelineKind::full_screen("sky", &kind.module, &groups, HDR) }.make(gpu);
     let fill_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some("baseline hillaire: tables of the eye"),
         entries: &[texture_entry(0, flat), written(3, flat), written(4, solid)],
@@ -60,7 +60,7 @@ pub fn make(parts: &Parts<'_>, tables: &AirTables) -> Result<Box<dyn Painter>, R
     let near = Texture::volume(&gpu.device, "froxels", [FROXELS; 3], HDR, usage);
     let bound = bind(gpu, &kind, &fill_layout, [&multiple, &seen, &near]);
     Ok(Box::new(Hillaire {
-        march,
+        by_tables,
         see: compute_pipeline(gpu, "baseline_hillaire_sky", &kind.module, &groups, "see"),
         froxels: compute_pipeline(gpu, "baseline_hillaire_sky", &kind.module, &groups, "froxels"),
         baker: HillaireBaker::new(gpu, shaders)?,
@@ -110,7 +110,7 @@ impl Painter for Hillaire {
         &self.groups[0]
     }
     fn pipeline(&self) -> &wgpu::RenderPipeline {
-        if self.marches { &self.march } else { &self.kind.pipeline }
+        if self.marches { &self.kind.pipeline } else { &self.by_tables }
     }
     fn before(&mut self, f: &mut FrameContext<'_>, draw: &Draw<'_>) {
         self.marches = f.scene.force.all || draw.body.camera_altitude_m > narrow(draw.air.medium.top_altitude_m);

@@ -25,7 +25,7 @@ use crate::gpu::buffer::Uniform;
 use crate::gpu::timer::Timer;
 use crate::gpu::{Gpu, ShaderLibrary, readback};
 use crate::scene::Snapshot;
-use crate::scene::gpu_data::{BodiesUniform, ExposureUniform, FrameUniform, SkyUniform};
+use crate::scene::gpu_data::{BodiesUniform, ExposureUniform, FrameUniform, Layers, SkyUniform};
 use crate::space::relative::narrow;
 use wgpu::{BindGroupEntry, BindingResource};
 
@@ -112,7 +112,7 @@ impl<'a> SkyBench<'a> {
             maps,
             shared,
             targets: Targets::new(gpu, size),
-            uniform: Uniform::new(&gpu.device, "Sky", wgpu::BufferUsages::empty()),
+            uniform: Uniform::new(&gpu.device, "Sky", wgpu::BufferUsages::STORAGE),
             timer: Timer::new(gpu),
             sun_rad: planet.sun_rad,
             clock: (gpu.info.device_type == wgpu::DeviceType::Cpu).then_some(clock),
@@ -163,7 +163,7 @@ impl<'a> SkyBench<'a> {
         let mut scene = scene.clone();
         scene.force.all = setting.every_pixel;
         self.shared.frame.write(&gpu.queue, &FrameUniform::new(&scene, 0));
-        self.shared.bodies.write(&gpu.queue, &BodiesUniform::new(&scene, |_| Some(0)));
+        self.shared.bodies.write(&gpu.queue, &BodiesUniform::new(&scene, |_| Layers { air: Some(0), ..Layers::default() }));
         self.shared.write_exposure(gpu, &ExposureUniform::starting(PRE));
         let Some(body) = scene.bodies.first() else { return Err(RenderError::NothingDrawn) };
         let mut settings = prepared.painter.settings_in(&scene, body, &prepared.air);
@@ -183,7 +183,8 @@ impl<'a> SkyBench<'a> {
             timer: Some(&mut self.timer),
             report: FrameReport::default(),
         };
-        let light = self.shared.light_group(gpu, &self.tables.values(), &Mirror::none(gpu), &ShadowMap::none(gpu));
+        let tables = self.tables.values();
+        let light = self.shared.light_group(gpu, &tables, &tables.media, &Mirror::none(gpu), &ShadowMap::none(gpu));
         f.clear_opaque();
         self.ground.record(&mut f, &light);
         let before = std::mem::replace(&mut f.encoder, gpu.encoder("sky bench, air"));
