@@ -274,8 +274,10 @@ pub enum Bench {
     /// Every integrator on every case of the reference data: error against CPU time and evaluations
     #[command(after_help = "Example:\n  syzygy bench orbit --case LEO_1000orb --method gauss_radau --json leo.json --plot plots")]
     Orbit(BenchOrbitArgs),
-    /// How far the colours of each air are from those of all wavelengths, and Elek's test flight
-    #[command(after_help = "Example:\n  syzygy bench air --spectral --json colours.json\n  syzygy bench air --elek --json elek.json")]
+    /// What each model of air costs to draw and how wrong it is; how far colours are from those of all wavelengths; Elek's test flight
+    #[command(
+        after_help = "Examples:\n  syzygy bench air --plot plots --json front.json\n  syzygy bench air --spectral --json colours.json\n  syzygy bench air --elek --json elek.json"
+    )]
     Air(BenchAirArgs),
     /// What choosing the terms of gravity by an error bound costs in error and saves in time
     #[command(after_help = "Example:\n  syzygy bench ships --json ships.json")]

@@ -1,5 +1,6 @@
 // The model `physical` along a ray: the march of lib/air_march.wgsl, from where the air begins to what is seen.
-// Numbers of Sky: [0].x the greatest extinction between datum and top, m⁻¹. Bound by pass/sky_physical.wgsl.
+// Numbers of Sky: [0].rgb the greatest extinction between datum and top, m⁻¹; [0].a: by how much of its colour a pixel may differ from those
+// around it and still take their mean. Bound by pass/sky_physical.wgsl.
 
 #include "lib/air_march.wgsl"
 

@@ -59,7 +59,7 @@ fn sky_rays(body: Body, air: Air, view: SkyView) -> u32 {
     if body.ids.w == 0 && view.surface > 0.8 * horizon && abs(low) < view.pixel * horizon {
         return 5u;
     }
-    let pixel = view.pixel * (path.start + path.exit);
+    let pixel = view.pixel * max(horizon, 0.0);
     let thin = (path.start > 0.0 || view.datum) && pixel > 0.05 * air.shape.y;
     return select(1u, 5u, thin && low < air.shape.y + pixel && low > -pixel);
 }

@@ -10,6 +10,7 @@ pub mod pass;
 pub mod pipeline;
 pub mod report;
 pub mod shared;
+pub mod sky_bench;
 pub mod targets;
 #[cfg(test)]
 pub(crate) mod tests;

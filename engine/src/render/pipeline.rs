@@ -99,6 +99,38 @@ pub struct PipelineKind<'a> {
     pub colours: usize,
     /// Values of `override` constants.
     pub constants: &'a [(&'a str, f64)],
+    /// What is asked of the stencil, where there is one: see [`Stencil`].
+    pub stencil: Option<Stencil>,
+}
+
+/// How a draw stands to the stencil.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stencil {
+    /// Marks what it draws.
+    Marks,
+    /// Draws what is not marked.
+    Unmarked,
+}
+
+impl Stencil {
+    /// Format of a stencil target, cleared to 0.
+    pub const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Stencil8;
+
+    /// The state; the reference that is set must be 1.
+    fn state(self) -> wgpu::DepthStencilState {
+        let (compare, pass_op) = match self {
+            Self::Marks => (wgpu::CompareFunction::Always, wgpu::StencilOperation::Replace),
+            Self::Unmarked => (wgpu::CompareFunction::NotEqual, wgpu::StencilOperation::Keep),
+        };
+        let face = wgpu::StencilFaceState { compare, pass_op, ..wgpu::StencilFaceState::IGNORE };
+        wgpu::DepthStencilState {
+            format: Self::FORMAT,
+            depth_write_enabled: None,
+            depth_compare: None,
+            stencil: wgpu::StencilState { front: face, back: face, read_mask: 0xff, write_mask: 0xff },
+            bias: wgpu::DepthBiasState::default(),
+        }
+    }
 }
 
 impl<'a> PipelineKind<'a> {
@@ -116,6 +148,7 @@ impl<'a> PipelineKind<'a> {
             entry: "fragment",
             colours: 1,
             constants: &[],
+            stencil: None,
         }
     }
     /// Draws one full-screen triangle into a colour target.
@@ -137,6 +170,7 @@ impl<'a> PipelineKind<'a> {
             entry: "fragment",
             colours: 1,
             constants: &[],
+            stencil: None,
         }
     }
     /// Makes it.
@@ -160,12 +194,14 @@ impl<'a> PipelineKind<'a> {
                 buffers: self.buffers,
             },
             primitive: wgpu::PrimitiveState { cull_mode: self.cull, ..Default::default() },
-            depth_stencil: self.depth.map(|write| wgpu::DepthStencilState {
-                format: DEPTH,
-                depth_write_enabled: Some(write),
-                depth_compare: Some(wgpu::CompareFunction::Greater),
-                stencil: wgpu::StencilState::default(),
-                bias: wgpu::DepthBiasState::default(),
+            depth_stencil: self.stencil.map(Stencil::state).or_else(|| {
+                self.depth.map(|write| wgpu::DepthStencilState {
+                    format: DEPTH,
+                    depth_write_enabled: Some(write),
+                    depth_compare: Some(wgpu::CompareFunction::Greater),
+                    stencil: wgpu::StencilState::default(),
+                    bias: wgpu::DepthBiasState::default(),
+                })
             }),
             multisample: wgpu::MultisampleState::default(),
             fragment: self.colour.map(|_| wgpu::FragmentState {

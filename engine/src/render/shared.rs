@@ -271,8 +271,14 @@ impl FrameContext<'_> {
         pass
     }
 
-    /// Begins a pass into two colour views of one size, without depth and with their old contents; group 0 is bound.
-    pub fn draw_pair<'e>(&'e mut self, name: &'static str, views: [&wgpu::TextureView; 2]) -> wgpu::RenderPass<'e> {
+    /// Begins a pass into two colour views of one size, without depth and with their old contents; group 0 is bound. `stencil`: a stencil of
+    /// that size, emptied, with 1 for reference.
+    pub fn draw_pair<'e>(
+        &'e mut self,
+        name: &'static str,
+        views: [&wgpu::TextureView; 2],
+        stencil: Option<&wgpu::TextureView>,
+    ) -> wgpu::RenderPass<'e> {
         let attachments = views.map(|view| {
             let ops = wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store };
             Some(wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops })
@@ -280,10 +286,16 @@ impl FrameContext<'_> {
         let mut pass = self.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some(name),
             color_attachments: &attachments,
+            depth_stencil_attachment: stencil.map(|view| wgpu::RenderPassDepthStencilAttachment {
+                view,
+                depth_ops: None,
+                stencil_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0), store: wgpu::StoreOp::Discard }),
+            }),
             timestamp_writes: self.timer.as_mut().and_then(|t| t.render(name)),
             ..Default::default()
         });
         pass.set_bind_group(0, &self.shared.frame_group, &[]);
+        pass.set_stencil_reference(1);
         pass
     }
 

@@ -1,5 +1,6 @@
 //! Targets: every texture sized by the picture, in one table.
 
+use super::pipeline::Stencil;
 use crate::gpu::Gpu;
 use crate::gpu::texture::Texture;
 use wgpu::TextureUsages as Use;
@@ -11,6 +12,15 @@ pub const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 /// Levels of the bloom chain at most.
 pub const BLOOM_LEVELS: u32 = 7;
 
+/// Light of an air at every so-manieth pixel of every so-manieth row.
+#[derive(Debug)]
+pub struct SkyLevel {
+    /// Radiance, pre-exposed, and depth; transmittance. What the channels hold: `shaders/pass/sky_physical.wgsl`.
+    pub light: [Texture; 2],
+    /// Marks what has been found while the level is drawn.
+    pub stencil: Texture,
+}
+
 /// The table.
 #[derive(Debug)]
 pub struct Targets {
@@ -20,8 +30,8 @@ pub struct Targets {
     pub opaque: Texture,
     /// The same behind an air that covers the whole picture; written by the sky pass.
     pub aerial: Texture,
-    /// Radiance and transmittance of an air at every second pixel of every second row; the sky pass's own.
-    pub sky: [Texture; 2],
+    /// Light of an air at every pixel, and at every second, fourth and eighth of every such row; the sky pass's own.
+    pub sky: [SkyLevel; 4],
     /// Depth of opaque things.
     pub depth: Texture,
     /// Bloom chain: level 0 is half the picture.
@@ -41,11 +51,27 @@ impl Targets {
         Self {
             size,
             opaque: Texture::new(d, "hdr opaque", size, HDR, hdr),
-            sky: ["half radiance", "half transmittance"].map(|name| Texture::new(d, name, half, HDR, hdr)),
+            sky: [1, 2, 4, 8].map(|rate| {
+                let part = size.map(|n: u32| n.div_ceil(rate).max(1));
+                SkyLevel {
+                    light: ["sky radiance", "sky transmittance"].map(|name| Texture::new(d, name, part, HDR, hdr)),
+                    stencil: Texture::new(d, "sky stencil", part, Stencil::FORMAT, Use::RENDER_ATTACHMENT),
+                }
+            }),
             aerial: Texture::new(d, "hdr aerial", size, HDR, hdr),
             depth: Texture::new(d, "depth", size, DEPTH, hdr),
             bloom_levels: (0..levels).map(|i| bloom.level_view(i)).collect(),
             bloom,
+        }
+    }
+
+    /// That of [`Targets::sky`] of every `rate`-th pixel: 1, 2, 4 or 8.
+    pub const fn sky_at(&self, rate: u32) -> &SkyLevel {
+        match rate {
+            8 => &self.sky[3],
+            4 => &self.sky[2],
+            2 => &self.sky[1],
+            _ => &self.sky[0],
         }
     }
 }

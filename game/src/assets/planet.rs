@@ -16,7 +16,7 @@
 //! Not here: bodies of a system ([`super::body`]); the keys of an air ([`super::atmosphere::keys`]).
 
 use super::atmosphere::{AirSpec, Datum, Setting, read_air};
-use super::fault::{AssetErrors, Fault};
+use super::fault::{AssetErrors, Fault, Source};
 use super::overlay::read_text;
 use super::reader::{ANY, Faults, POSITIVE, Reader};
 use super::tree::{Data, Entry, Node, parse};
@@ -27,6 +27,7 @@ use engine::scene::gpu_data::MAX_OCCLUDERS;
 use engine::units::{DEG, KM, NM};
 use glam::DVec3;
 use std::path::Path;
+use std::sync::Arc;
 
 /// The star as the planet sees it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,7 +53,13 @@ pub struct Planet {
 
 /// Reads a planet; `model` stands for what its air names. The settings of that model are those in the file's table of its name, or its own.
 pub fn read_planet(path: &Path, model: Option<&str>) -> Result<Planet, AssetErrors> {
-    let mut top = tree(path)?;
+    planet_of(&read_text(path).map_err(AssetErrors::one)?, model)
+}
+
+/// The same from a text that is at hand.
+pub fn planet_of(source: &Arc<Source>, model: Option<&str>) -> Result<Planet, AssetErrors> {
+    let path = source.path.as_path();
+    let mut top = parse(source).map_err(|faults| AssetErrors { faults })?;
     let mut elsewhere = match top.get("atmosphere").and_then(|e| e.value.text()) {
         Some(file) => Some(tree(&path.parent().unwrap_or(Path::new("")).join(file))?),
         None => None,

@@ -7,15 +7,30 @@ use std::path::PathBuf;
 /// Arguments of `bench air`.
 #[derive(Clone, Debug, Args)]
 pub struct BenchAirArgs {
-    /// Judge the colours: ΔE2000 against all wavelengths
-    #[arg(long, required_unless_present = "elek")]
+    /// Judge the colours instead: ΔE2000 against all wavelengths
+    #[arg(long)]
     pub spectral: bool,
-    /// Fly Elek's test flight with the model `view_table`: five tests, a pitch from straight down to straight up
+    /// Fly Elek's test flight instead, with the model `view_table`: five tests, a pitch from straight down to straight up
     #[arg(long, conflicts_with = "spectral")]
     pub elek: bool,
     /// The flight at his sizes: pictures of 800×600 and 2560×2048, tables of 256³ and 128³, a frame for every second
     #[arg(long, requires = "elek")]
     pub full: bool,
+    /// Draw error against time, a picture for each light and one for all, into this folder
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["spectral", "elek"])]
+    pub plot: Option<PathBuf>,
+    /// Only these planets of tests/reference/planets: earth, thick, dusty
+    #[arg(long, value_name = "NAME", value_parser = ["earth", "thick", "dusty"], default_value = "earth")]
+    pub planet: Vec<String>,
+    /// Pictures of 160×90 times this, odd: 3 makes 480×270, 7 makes 1120×630
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(3..=15))]
+    pub scale: u32,
+    /// Rounds, of which the fastest counts
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub rounds: u32,
+    /// Ask the reference anew (minutes) and write what it says here, instead of reading tests/reference/sky_front.csv
+    #[arg(long, value_name = "F.csv", conflicts_with_all = ["spectral", "elek"])]
+    pub truth: Option<PathBuf>,
     /// Write the rows here instead of stdout
     #[arg(long, value_name = "F.json")]
     pub json: Option<PathBuf>,

@@ -320,10 +320,15 @@ impl AirBaker {
         wgpu::BufferBinding { buffer: &self.airs.buffer, offset: u64::from(slot) * size, size: wgpu::BufferSize::new(size) }
     }
 
-    /// Tables of one air alone, in slot 0 (its bands behind it), submitted: for probes and tests.
-    pub fn bake_alone(&mut self, gpu: &Gpu, air: &Air) -> AirTables {
+    /// One air alone, in slot 0 (its bands behind it), waits to be baked.
+    pub fn assign_alone(&mut self, air: &Air) {
         self.slots.clear();
         self.slots_of(0, air);
+    }
+
+    /// Tables of one air alone, as [`AirBaker::assign_alone`] has it, submitted: for probes and tests.
+    pub fn bake_alone(&mut self, gpu: &Gpu, air: &Air) -> AirTables {
+        self.assign_alone(air);
         let mut encoder = gpu.encoder("air tables");
         self.bake(gpu, &mut encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default()));
         gpu.submit(encoder);

@@ -5,7 +5,9 @@
 pub mod air_bands;
 pub mod air_orders;
 pub mod air_tables;
+pub mod baseline_bruneton;
 pub mod baseline_hillaire;
+pub mod baseline_hillaire_sky;
 pub mod bloom;
 pub mod exposure;
 pub mod refracted;

@@ -150,7 +150,7 @@ fn panel(
 }
 
 /// The game's own font, for pictures too: no system font is asked for.
-fn lend_font() -> Result<(), Box<dyn std::error::Error>> {
+pub fn lend_font() -> Result<(), Box<dyn std::error::Error>> {
     static FONT: OnceLock<Vec<u8>> = OnceLock::new();
     let bytes = FONT
         .get_or_init(|| FontDefinitions::default().font_data.get("Ubuntu-Light").map_or_else(Vec::new, |f| (*f.font).as_ref().to_vec()));

@@ -56,11 +56,11 @@ impl Rect {
         (self.width * self.height) as f32 / (size[0].max(1) * size[1].max(1)) as f32
     }
 
-    /// The texels of a texture of half the size that its pixels ask for.
-    pub fn half(self, size: [u32; 2]) -> Self {
+    /// The texels of a texture of every `rate`-th pixel each way that its pixels, and those between, ask for; `size` is the picture's.
+    pub fn every(self, rate: u32, size: [u32; 2]) -> Self {
         let part = |from: u32, len: u32, of: u32| {
-            let first = from / 2;
-            (first, ((from + len).div_ceil(2) + 1).min(of.div_ceil(2)).saturating_sub(first))
+            let first = from / rate;
+            (first, ((from + len).div_ceil(rate) + 1).min(of.div_ceil(rate)).saturating_sub(first))
         };
         let ((left, width), (top, height)) = (part(self.left, self.width, size[0]), part(self.top, self.height, size[1]));
         Self { left, top, width, height }

@@ -1,20 +1,26 @@
 //! How the model `physical` draws: `shaders/lib/physical.wgsl`, with the air tables of group 1.
 //!
-//! The march is made at every second pixel of every second row first; in the picture a pixel between four that agree takes their mean, any
-//! other marches by itself. A forced frame marches at every pixel: the two differ by the bound that the shader states at `AGREE`.
+//! The march is made at every eighth pixel of every eighth row first, then at every fourth, second and one, where a pixel between four that agree
+//! takes their mean and any other marches by itself. Where another world's shadow may fall, which may be small, and where density jumps, the
+//! first is every second. A forced frame marches at every pixel: the two differ by the bound that is stated at [`AGREE`].
 
 use super::{Draw, Painter, PainterKind, Parts, no_settings};
 use crate::air::{Air, Classes, Medium};
 use crate::gpu::Gpu;
 use crate::gpu::texture::Texture;
 use crate::render::RenderError;
-use crate::render::pipeline::{PipelineKind, texture_entry};
+use crate::render::pipeline::{PipelineKind, Stencil, texture_entry};
 use crate::render::shared::FrameContext;
 use crate::render::targets::HDR;
 use crate::scene::Body;
-use crate::scene::gpu_data::SkySettings;
-use crate::space::relative::narrow;
+use crate::scene::gpu_data::{SkySettings, vec4};
+use crate::space::relative::narrow3;
+use glam::{DVec3, Vec3};
 use wgpu::{BindGroupEntry, BindingResource};
+
+/// Of its colour, how much a pixel may differ from those around it and still take their mean. What varies evenly by this much is then right to an
+/// eighth of its square, 3e-3; the bend of an edge to a quarter, 4 %, on a line one pixel wide.
+pub const AGREE: f32 = 0.16;
 
 /// What most airs do without: media that are tables, and shadows of other worlds.
 const PLAIN: [(&str, f64); 2] = [("MEDIA_TABLES", 0.0), ("AIR_ECLIPSES", 0.0)];
@@ -28,10 +34,19 @@ pub fn make(parts: &Parts<'_>) -> Result<Box<dyn Painter>, RenderError> {
 struct Rates {
     /// A march at every pixel.
     full: wgpu::RenderPipeline,
-    /// A march at every second pixel of every second row.
-    half: wgpu::RenderPipeline,
-    /// The picture from those.
-    merge: wgpu::RenderPipeline,
+    /// The levels, from the coarsest to every pixel.
+    levels: Vec<Level>,
+    /// The picture from the last of those.
+    lay: wgpu::RenderPipeline,
+}
+
+/// One level: of every so-manieth pixel of every so-manieth row.
+struct Level {
+    rate: u32,
+    /// Takes what it can from the level before; not on the first.
+    take: Option<wgpu::RenderPipeline>,
+    /// Marches at what is left.
+    march: wgpu::RenderPipeline,
 }
 
 /// The painter.
@@ -50,12 +65,23 @@ impl Physical {
         let own = [0, 1].map(|i| texture_entry(i, wgpu::TextureViewDimension::D2));
         let kind = PainterKind::new(parts, "pass/sky_physical.wgsl", &own)?;
         let groups = [&parts.shared.frame_layout, &parts.shared.light_layout, parts.picture, &kind.own_layout];
-        let rates = [&[][..], &PLAIN[..]].map(|constants| {
-            let one = |entry, colours| {
+        let rates = [(&[][..], &[2, 1][..]), (&PLAIN[..], &[8, 4, 2, 1][..])].map(|(constants, levels)| {
+            let plain = PipelineKind { constants, ..PipelineKind::full_screen("sky", &kind.module, &groups, HDR) };
+            let at = |rate: u32, entry, stencil| {
+                let constants = &[constants, &[("RATE", f64::from(rate))]].concat();
                 let kind = PipelineKind::full_screen("sky", &kind.module, &groups, HDR);
-                PipelineKind { entry, colours, constants, ..kind }.make(parts.gpu)
+                PipelineKind { entry, colours: 2, constants, stencil, ..kind }.make(parts.gpu)
             };
-            Rates { full: one("fragment", 1), half: one("half_rate", 2), merge: one("merge", 1) }
+            let level = |(i, rate): (usize, &u32)| Level {
+                rate: *rate,
+                take: (i > 0).then(|| at(*rate, "take_level", Some(Stencil::Marks))),
+                march: at(*rate, "march_level", (i > 0).then_some(Stencil::Unmarked)),
+            };
+            Rates {
+                full: plain.make(parts.gpu),
+                levels: levels.iter().enumerate().map(level).collect(),
+                lay: PipelineKind { entry: "lay", ..plain }.make(parts.gpu),
+            }
         });
         let dark = Texture::new(&parts.gpu.device, "no air", [1, 1], HDR, wgpu::TextureUsages::TEXTURE_BINDING);
         let none = group(parts.gpu, &kind.own_layout, [&dark.view; 2]);
@@ -69,7 +95,7 @@ impl Painter for Physical {
     }
     fn settings(&self, _body: &Body, air: &Air) -> SkySettings {
         let mut all = no_settings();
-        all[0][0] = greatest_extinction(&air.medium);
+        all[0] = vec4(greatest_extinction(&air.medium), AGREE);
         all
     }
     fn group(&self, _id: u16) -> &wgpu::BindGroup {
@@ -86,18 +112,24 @@ impl Painter for Physical {
             self.chosen = Some((self.none.clone(), rates.full.clone()));
             return;
         }
-        let views = [&f.targets.sky[0].view, &f.targets.sky[1].view];
-        let halves = group(f.gpu, &self.kind.own_layout, views);
-        let rect = draw.rect.half(f.targets.size);
-        let mut pass = f.draw_pair("sky", views);
-        pass.set_pipeline(&rates.half);
-        pass.set_bind_group(1, draw.light, &[]);
-        pass.set_bind_group(2, draw.picture, &[]);
-        pass.set_bind_group(3, &self.none, &[]);
-        pass.set_scissor_rect(rect.left, rect.top, rect.width, rect.height);
-        pass.draw(0..3, 0..1);
-        drop(pass);
-        self.chosen = Some((halves, rates.merge.clone()));
+        let mut from = self.none.clone();
+        for level in &rates.levels {
+            let target = f.targets.sky_at(level.rate);
+            let views = target.light.each_ref().map(|t| &t.view);
+            let rect = draw.rect.every(level.rate, f.targets.size);
+            let mut pass = f.draw_pair("sky", views, level.take.as_ref().map(|_| &target.stencil.view));
+            pass.set_bind_group(1, draw.light, &[]);
+            pass.set_bind_group(2, draw.picture, &[]);
+            pass.set_bind_group(3, &from, &[]);
+            pass.set_scissor_rect(rect.left, rect.top, rect.width, rect.height);
+            for pipeline in level.take.iter().chain([&level.march]) {
+                pass.set_pipeline(pipeline);
+                pass.draw(0..3, 0..1);
+            }
+            drop(pass);
+            from = group(f.gpu, &self.kind.own_layout, views);
+        }
+        self.chosen = Some((from, rates.lay.clone()));
     }
 }
 
@@ -112,8 +144,8 @@ fn group(gpu: &Gpu, layout: &wgpu::BindGroupLayout, views: [&wgpu::TextureView; 
     })
 }
 
-/// The greatest extinction of any channel between datum and top, m⁻¹.
-fn greatest_extinction(medium: &Medium) -> f32 {
+/// The greatest extinction between datum and top, m⁻¹.
+fn greatest_extinction(medium: &Medium) -> Vec3 {
     let altitudes = (0..64).map(|i| f64::from(i * i) / 3969.0 * medium.top_altitude_m);
-    narrow(altitudes.map(|h| medium.extinction(h).max_element()).fold(0.0, f64::max))
+    narrow3(altitudes.map(|h| medium.extinction(h)).fold(DVec3::ZERO, DVec3::max))
 }
