@@ -138,9 +138,12 @@ impl Course<'_> {
         };
         let rays: Vec<Ray> = shots.iter().flat_map(|s| self.views.iter().map(move |v| ray(s, v))).collect();
         let options = Options { max_walks: 0, single_error: 1e-4, ..Options::default() };
-        let truth: Vec<Lights> =
-            radiance(self.medium, &rays, &options).chunks(self.views.len()).map(|c| c.iter().map(|e| e.single.to_array()).collect()).collect();
-        let meets: Vec<u8> = rays.iter().map(|r| span(self.medium, r.from_m, r.direction).map_or(0, |s| 1 + u8::from(s.hits_ground))).collect();
+        let truth: Vec<Lights> = radiance(self.medium, &rays, &options)
+            .chunks(self.views.len())
+            .map(|c| c.iter().map(|e| e.single.to_array()).collect())
+            .collect();
+        let meets: Vec<u8> =
+            rays.iter().map(|r| span(self.medium, r.from_m, r.direction).map_or(0, |s| 1 + u8::from(s.hits_ground))).collect();
         let single = self.probe(gpu, prober, shots, false, None);
         let all = self.probe(gpu, prober, shots, true, None);
         let fine = self.probe(gpu, prober, shots, true, Some(FINE));
@@ -157,7 +160,10 @@ impl Course<'_> {
                         let azimuth = direction.y.atan2(direction.x) / DEG;
                         let sun = self.sun.0.z.clamp(-1.0, 1.0).acos() / DEG;
                         let aside = shots[i].occluders.first().map_or(0.0, |o| o.centre_m.y / KM);
-                        format!("{:.3} m, moon {aside:.1} km, sun {sun:.1}°, view {zenith:.1}° {azimuth:.0}°, channel {channel}: error {e:+.4} of {l:.2e}", shots[i].altitude_m)
+                        format!(
+                            "{:.3} m, moon {aside:.1} km, sun {sun:.1}°, view {zenith:.1}° {azimuth:.0}°, channel {channel}: error {e:+.4} of {l:.2e}",
+                            shots[i].altitude_m
+                        )
                     };
                     let count = |worst: &mut (f64, String), x: f64, e: f64, l: f64| {
                         if x > worst.0 || x.is_nan() {

@@ -14,8 +14,7 @@ pub const RATIO: f64 = 1.0386;
 pub const PLACES: [(&str, f64); 6] =
     [("centre", 0.0), ("inside", 40e3), ("edge", 63e3), ("out", 80e3), ("half", 1700e3), ("first", 3000e3)];
 /// Columns of the file.
-pub const HEADER: &str =
-    "class,cam_x_km,cam_y_km,cam_z_km,view_x,view_y,view_z,sun_x,sun_y,sun_z,moon_x_km,moon_y_km,moon_z_km,L1_r,L1_g,L1_b,L_r,L_g,L_b,stderr_r,stderr_g,stderr_b";
+pub const HEADER: &str = "class,cam_x_km,cam_y_km,cam_z_km,view_x,view_y,view_z,sun_x,sun_y,sun_z,moon_x_km,moon_y_km,moon_z_km,L1_r,L1_g,L1_b,L_r,L_g,L_b,stderr_r,stderr_g,stderr_b";
 
 /// A ray of the file; radiances per unit of solar irradiance, sr⁻¹.
 #[derive(Clone, Debug)]
@@ -67,7 +66,9 @@ pub fn rays() -> Vec<(String, Ray)> {
 /// # Panics
 /// Where the planet's file is missing.
 pub fn write(rel_error: f64) -> String {
-    let mut out = String::from("# Radiances of eclipsed air over the planet `earth` by engine::air::reference, per unit of solar irradiance. Made by\n");
+    let mut out = String::from(
+        "# Radiances of eclipsed air over the planet `earth` by engine::air::reference, per unit of solar irradiance. Made by\n",
+    );
     out += "# cargo test --release --workspace --test sky_continuity -- --ignored writes_the_eclipse\n";
     out += HEADER;
     out += "\n";
