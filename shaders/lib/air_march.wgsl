@@ -92,6 +92,13 @@ fn air_march(
         let panels = air_panels(air, media, slot, along, begin, next, select(most, (most + 1u) / 2u, dark));
         for (var i = 0u; i < panels; i++) {
             let n = air_nodes(air, path, begin, next, i, panels);
+            // The rings' free fractions from the two Gauss points of the panel, evenly between and beyond: their integral is exact to third order.
+            var around: mat2x4<f32>;
+            if AIR_ECLIPSES && shade.falls {
+                let at = air_panel_places(path, begin, next, (f32(i) + GAUSS_TWO) / f32(panels));
+                around[0] = eclipse_around(body, star, ray * (path.start + at.x), air_ring_radii(air));
+                around[1] = eclipse_around(body, star, ray * (path.start + at.y), air_ring_radii(air));
+            }
             let m0 = air_matter(air, media, slot, n.altitude.x);
             let m1 = air_matter(air, media, slot, n.altitude.y);
             let m2 = air_matter(air, media, slot, n.altitude.z);
@@ -107,7 +114,9 @@ fn air_march(
                 let s = dot(n.s, one);
                 var eclipse = NO_ECLIPSE;
                 if AIR_ECLIPSES && shade.falls {
-                    eclipse = eclipse_at(body, star, ray * (path.start + s), air_rings(air, dot(n.altitude, one), (along.up_sun + s * along.ray_sun) / air.shape.x));
+                    let rings = air_rings(air, dot(n.altitude, one), (along.up_sun + s * along.ray_sun) / air.shape.x);
+                    let here = mix(around[0], around[1], (dot(GAUSS_X, one) - GAUSS_TWO.x) / (GAUSS_TWO.y - GAUSS_TWO.x));
+                    eclipse = eclipse_of(eclipse_visible(body, star, ray * (path.start + s)), max(here, vec4<f32>(0.0)), rings.weight);
                 }
                 // Where a point stands for much optical depth, the collocation overshoots: there its source is taken as even over its share.
                 let own = depths * (GAUSS_WEIGHT * one);

@@ -33,6 +33,17 @@ fn air_nodes(air: Air, path: AirPath, begin: f32, end: f32, panel: u32, panels: 
     return AirNodes(s, (2.0 * length * part) * u, air_altitudes(air, path, s));
 }
 
+const GAUSS_TWO: vec2<f32> = vec2<f32>(0.211324865405, 0.788675134595);
+
+// Distances of the places that lie at parts `x` of the points' own measure of a stretch.
+fn air_panel_places(path: AirPath, begin: f32, end: f32, x: vec2<f32>) -> vec2<f32> {
+    let rising = 0.5 * (begin + end) + path.slope > 0.0;
+    let eye = rising && begin <= 0.0 && path.start <= 0.0;
+    let u = select(1.0 - x, x, rising);
+    let away = (end - begin) * select(u * sqrt(u), u * u, eye);
+    return select(end - away, begin + away, rising);
+}
+
 // Where the next stretch ends: at the nearest of `cuts`, the lowest point, a jump of density, or `end`.
 fn air_next_cut(air: Air, path: AirPath, begin: f32, end: f32, cuts: vec4<f32>, more: vec4<f32>) -> f32 {
     let least = begin + 1e-4 * end;

@@ -25,11 +25,12 @@ fn daylight(
     let mu_s = dot(up, body.sun.xyz);
     var eclipse = NO_ECLIPSE;
     if body.ids.y > 0 && (slot >= 0 || body.lights.x == 0) {
-        var rings = NO_RINGS;
+        let direct = eclipse_visible(body, star, point);
+        eclipse = Eclipse(direct, vec3<f32>(direct));
         if slot >= 0 {
-            rings = air_rings(air, altitude, mu_s);
+            let rings = air_rings(air, altitude, mu_s);
+            eclipse = eclipse_of(direct, eclipse_around(body, star, point, rings.radius), rings.weight);
         }
-        eclipse = eclipse_at(body, star, point, rings);
     }
     var free = vec3<f32>(eclipse.direct);
     if body.lights.x > 0 {

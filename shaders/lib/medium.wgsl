@@ -60,7 +60,10 @@ fn air_rings(air: Air, altitude: f32, mu_s: f32) -> Rings {
     let m = clamp((mu_s - air.rings[5].w) * air.rings[6].w, 0.0, 1.0);
     return Rings(
         mat4x3<f32>(ring_weight(air, 0u, h, m), ring_weight(air, 1u, h, m), ring_weight(air, 2u, h, m), ring_weight(air, 3u, h, m)),
-        vec4<f32>(air.rings[0].w, air.rings[1].w, air.rings[2].w, air.rings[3].w));
+        air_ring_radii(air));
+}
+fn air_ring_radii(air: Air) -> vec4<f32> {
+    return vec4<f32>(air.rings[0].w, air.rings[1].w, air.rings[2].w, air.rings[3].w);
 }
 fn ring_weight(air: Air, k: u32, h: f32, m: f32) -> vec3<f32> {
     return air.rings[k].rgb + h * air.rings[4u + k].rgb + m * (air.rings[8u + k].rgb + h * air.rings[12u + k].rgb);

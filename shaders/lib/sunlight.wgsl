@@ -12,11 +12,10 @@ struct Eclipse {
 }
 
 const NO_ECLIPSE: Eclipse = Eclipse(1.0, vec3<f32>(1.0));
-const NO_RINGS: Rings = Rings(mat4x3<f32>(), vec4<f32>(0.0));
 
-// `rings`: those of the air at the point's altitude. Several occluders: the product, see engine/src/light/occlusion.rs.
-fn eclipse_at(body: Body, star: vec4<f32>, point: vec3<f32>, rings: Rings) -> Eclipse {
-    var out = NO_ECLIPSE;
+// Free fraction on each of the rings, of the sun and of all occluders: smooth enough to be found at few places of a ray. Several occluders: the
+// product, see engine/src/light/occlusion.rs.
+fn eclipse_around(body: Body, star: vec4<f32>, point: vec3<f32>, radius: vec4<f32>) -> vec4<f32> {
     let to_star = star.xyz - point;
     let distance = length(to_star);
     let sun = to_star / distance;
@@ -24,6 +23,7 @@ fn eclipse_at(body: Body, star: vec4<f32>, point: vec3<f32>, rings: Rings) -> Ec
     // Seen from the sun a ring on the ground is an ellipse: the root of the mean square of its radius.
     let mu = dot(sun, normalize(point - body.centre.xyz));
     let slant = sqrt(0.5 + 0.5 * mu * mu);
+    var around = vec4<f32>(1.0);
     let count = min(u32(max(body.ids.y, 0)), MAX_OCCLUDERS);
     for (var i = 0u; i < count; i++) {
         let offset = body.occluders[i].xyz - point;
@@ -32,18 +32,20 @@ fn eclipse_at(body: Body, star: vec4<f32>, point: vec3<f32>, rings: Rings) -> Ec
             continue;
         }
         let limb = limb_of_sphere(sun, offset, body.occluders[i].w);
-        let shift = rings.radius * (slant / away);
+        let shift = radius * (slant / away);
         if limb.y > sun_rad + shift.w {
             continue;
         }
-        let own = visible_behind_limb(sun_rad, limb.x, limb.y);
-        out.direct *= own;
-        let around = vec4<f32>(
+        around *= vec4<f32>(
             visible_around(sun_rad, limb, shift.x), visible_around(sun_rad, limb, shift.y),
             visible_around(sun_rad, limb, shift.z), visible_around(sun_rad, limb, shift.w));
-        out.diffuse *= vec3<f32>(own) + rings.weight * (around - own);
     }
-    return out;
+    return around;
+}
+
+// Of a point's own free fraction and those of its rings.
+fn eclipse_of(direct: f32, around: vec4<f32>, weight: mat4x3<f32>) -> Eclipse {
+    return Eclipse(direct, vec3<f32>(direct) + weight * (around - direct));
 }
 
 // Mean free fraction on a ring of angular radius `shift` about the point for which `limb` was made by limb_of_sphere: that at the mean
@@ -62,10 +64,21 @@ fn visible_around(sun_rad: f32, limb: vec3<f32>, shift: f32) -> f32 {
 
 // Free fraction of the sun's disc at a point, other worlds considered; the body's own horizon is not.
 fn eclipse_visible(body: Body, star: vec4<f32>, point: vec3<f32>) -> f32 {
-    if body.ids.y <= 0 {
-        return 1.0;
+    var free = 1.0;
+    let to_star = star.xyz - point;
+    let distance = length(to_star);
+    let sun = to_star / distance;
+    let sun_rad = asin_small(star.w / distance);
+    let count = min(u32(max(body.ids.y, 0)), MAX_OCCLUDERS);
+    for (var i = 0u; i < count; i++) {
+        let offset = body.occluders[i].xyz - point;
+        if length(offset) > distance {
+            continue;
+        }
+        let limb = limb_of_sphere(sun, offset, body.occluders[i].w);
+        free *= visible_behind_limb(sun_rad, limb.x, limb.y);
     }
-    return eclipse_at(body, star, point, NO_RINGS).direct;
+    return free;
 }
 
 // Altitude above the datum of a point given from the camera: from the camera's own altitude, without |p| − R.

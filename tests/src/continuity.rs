@@ -37,16 +37,26 @@ pub fn climb(shots: u32, top_m: f64) -> Vec<f64> {
     all.extend(part(rest).map(|x| (top_m + 5.0 * KM) * (1000.0 * KM / (top_m + 5.0 * KM)).powf(x)));
     all.iter_mut().for_each(|h| *h = f64::from(narrow(*h)));
     all.sort_by(f64::total_cmp);
+    all.dedup();
     all
 }
 
-/// One shot: where the eye is, m from the centre (straight up), and what hides the sun.
+/// One shot: where the eye is, straight up from the centre, and what hides the sun.
 #[derive(Clone, Debug)]
 pub struct Shot {
     /// Altitude of the eye, m.
     pub altitude_m: f64,
+    /// Where the model is told that it is: the same, but to see that a pop would be found.
+    pub told_m: f64,
     /// Occluders, from the centre.
     pub occluders: Vec<Sphere>,
+}
+
+impl Shot {
+    /// From an altitude.
+    pub fn at(altitude_m: f64, occluders: Vec<Sphere>) -> Self {
+        Self { altitude_m, told_m: altitude_m, occluders }
+    }
 }
 
 /// A course of shots.
@@ -95,7 +105,7 @@ impl Course<'_> {
         let rays = |shot: &Shot| {
             self.views
                 .iter()
-                .map(move |v| ProbeRay { up: row(DVec3::Z, shot.altitude_m), ray: row(*v, 0.0), sun: row(self.sun.0, self.sun.1) })
+                .map(move |v| ProbeRay { up: row(DVec3::Z, shot.told_m), ray: row(*v, 0.0), sun: row(self.sun.0, self.sun.1) })
                 .collect::<Vec<_>>()
         };
         let ask = |rays: &[ProbeRay], occluders: &[Sphere]| {
@@ -128,9 +138,12 @@ impl Course<'_> {
         };
         let rays: Vec<Ray> = shots.iter().flat_map(|s| self.views.iter().map(move |v| ray(s, v))).collect();
         let options = Options { max_walks: 0, single_error: 1e-4, ..Options::default() };
-        let truth: Vec<Lights> =
-            radiance(self.medium, &rays, &options).chunks(self.views.len()).map(|c| c.iter().map(|e| e.single.to_array()).collect()).collect();
-        let meets: Vec<u8> = rays.iter().map(|r| span(self.medium, r.from_m, r.direction).map_or(0, |s| 1 + u8::from(s.hits_ground))).collect();
+        let truth: Vec<Lights> = radiance(self.medium, &rays, &options)
+            .chunks(self.views.len())
+            .map(|c| c.iter().map(|e| e.single.to_array()).collect())
+            .collect();
+        let meets: Vec<u8> =
+            rays.iter().map(|r| span(self.medium, r.from_m, r.direction).map_or(0, |s| 1 + u8::from(s.hits_ground))).collect();
         let single = self.probe(gpu, prober, shots, false, None);
         let all = self.probe(gpu, prober, shots, true, None);
         let fine = self.probe(gpu, prober, shots, true, Some(FINE));
@@ -147,7 +160,10 @@ impl Course<'_> {
                         let azimuth = direction.y.atan2(direction.x) / DEG;
                         let sun = self.sun.0.z.clamp(-1.0, 1.0).acos() / DEG;
                         let aside = shots[i].occluders.first().map_or(0.0, |o| o.centre_m.y / KM);
-                        format!("{:.3} m, moon {aside:.1} km, sun {sun:.1}°, view {zenith:.1}° {azimuth:.0}°, channel {channel}: error {e:+.4} of {l:.2e}", shots[i].altitude_m)
+                        format!(
+                            "{:.3} m, moon {aside:.1} km, sun {sun:.1}°, view {zenith:.1}° {azimuth:.0}°, channel {channel}: error {e:+.4} of {l:.2e}",
+                            shots[i].altitude_m
+                        )
                     };
                     let count = |worst: &mut (f64, String), x: f64, e: f64, l: f64| {
                         if x > worst.0 || x.is_nan() {
@@ -170,26 +186,28 @@ impl Course<'_> {
     }
 }
 
-/// A transit of a moon whose shadow's axis goes by the point straight below the eye on the datum, from one side to the other: `shots` of them,
-/// a third of them dense about each of the contacts. `ratio` is the moon's radius over the sun's as they are seen from the centre's distance; `miss_m` by how much the axis
-/// misses the point.
-pub fn transit(medium: &Medium, sun: (DVec3, f64), altitude_m: f64, ratio: f64, miss_m: f64, shots: u32) -> Vec<Shot> {
-    const MOON_M: f64 = 1.7374e6;
+/// Radius of the moon, m.
+pub const MOON_M: f64 = 1.7374e6;
+
+/// A moon that is seen `ratio` times as large as the sun from the point straight up on the datum, its shadow's axis `aside_m` from there.
+pub fn moon_at(bottom_radius_m: f64, sun: (DVec3, f64), ratio: f64, aside_m: DVec3) -> Sphere {
     let distance_m = MOON_M / (ratio * sun.1.sin());
-    let (outer, inner) = (MOON_M + distance_m * sun.1.sin(), (MOON_M - distance_m * sun.1.sin()).abs());
-    let mut asides: Vec<f64> = vec![0.0];
+    Sphere { centre_m: DVec3::Z * bottom_radius_m + sun.0 * distance_m + aside_m, radius_m: MOON_M }
+}
+
+/// A transit of that moon from first to fourth contact along +Y: two thirds of the shots are dense about second and third contact. `miss_m`: by
+/// how much its shadow's axis goes by the point. One shot stands in the middle, to the bit.
+pub fn transit(medium: &Medium, sun: (DVec3, f64), altitude_m: f64, ratio: f64, miss_m: f64, shots: u32) -> Vec<Shot> {
+    let at_sun = MOON_M / ratio;
+    let (outer, inner) = (MOON_M + at_sun, (MOON_M - at_sun).abs());
     let third = shots / 3;
+    let mut asides = vec![0.0];
     for i in 0..=third {
         let x = 2.0 * f64::from(i) / f64::from(third) - 1.0;
-        asides.push(1.02 * outer * x);
-        for contact in [-inner, inner] {
-            asides.push(contact + 0.3 * inner * x * x * x);
-        }
+        asides.extend([1.02 * outer * x, 0.3 * inner * x * x * x - inner, 0.3 * inner * x * x * x + inner]);
     }
     asides.sort_by(f64::total_cmp);
-    let place = |aside: f64| Sphere {
-        centre_m: DVec3::Z * medium.bottom_radius_m + sun.0 * distance_m + DVec3::Y * aside + sun.0.cross(DVec3::Y) * miss_m,
-        radius_m: MOON_M,
-    };
-    asides.into_iter().map(|a| Shot { altitude_m, occluders: vec![place(a)] }).collect()
+    let aside = |y: f64| DVec3::Y * y + sun.0.cross(DVec3::Y) * miss_m;
+    let shot = |y| Shot::at(altitude_m, vec![moon_at(medium.bottom_radius_m, sun, ratio, aside(y))]);
+    asides.into_iter().map(shot).collect()
 }

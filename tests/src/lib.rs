@@ -1,7 +1,8 @@
 //! Tests: what crosses crates. Here is what they share: a device, and a way to ask WGSL functions for numbers.
 
+pub mod continuity;
 pub mod flights;
-
+pub mod sky_eclipse;
 pub mod sky_shots;
 pub mod sky_truth;
 

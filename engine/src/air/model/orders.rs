@@ -141,7 +141,8 @@ struct Series {
 
 /// Those of all layers; a layer that scatters nothing has none.
 fn series(medium: &Medium) -> Vec<Series> {
-    let mut out: Vec<Series> = medium.layers.iter().map(|_| Series { chi: [0.0; DEGREE + 1], forward: 0.0, full: [0.0; DRAWN_DEGREE + 1] }).collect();
+    let mut out: Vec<Series> =
+        medium.layers.iter().map(|_| Series { chi: [0.0; DEGREE + 1], forward: 0.0, full: [0.0; DRAWN_DEGREE + 1] }).collect();
     for class in Classes::of(medium).list {
         let all = class.legendre(DRAWN_DEGREE);
         let forward = forward_share(&all);

@@ -236,11 +236,21 @@ mod tests {
 
     #[test]
     fn earth_s_far_light_is_that_of_walks() {
-        // Of the reference's walks to an eye at 10 km that looks up, with a shadow of this radius about it, the share that is left: green.
-        let spread = Spread::new(&earth());
-        println!("{spread:?}");
-        let left = |d: f64| (0..RINGS).filter(|k| spread.radius_m[*k] > d).map(|k| spread.high[1][k].y).sum::<f64>();
-        assert!((0.35..0.55).contains(&left(12e3)), "{}", left(12e3));
+        // Share of the further orders of an eye at 10 km that looks straight up to a sun there, from beyond 12, 50, 100 and 200 km, green: by
+        // walks of the reference with a sharp shadow of that radius about the line of sight (to 3 %).
+        let medium = earth();
+        let sunlight = Sunlight::new(&medium);
+        let [first, later] = [15e3, 5e3].map(|h| Hop::new(&paths(&medium, &sunlight, h), 1.0));
+        for (d, walked, off) in [(12e3, 0.688, 0.09), (50e3, 0.265, 0.12), (100e3, 0.129, 0.19), (200e3, 0.0500, 0.06)] {
+            let gain = later.gain.y;
+            let far = 1.0 - (1.0 - first.beyond(d).y) * (1.0 - gain) / (1.0 - gain * (1.0 - later.beyond(d).y));
+            println!("{d} m: {far} of {walked}, {:+.3}", far / walked - 1.0);
+            assert!((far / walked - 1.0 - off).abs() < 0.05, "{d} m: {far} of {walked}");
+        }
+        // What a ring is: an average of them all has the share of the first bin's beginning.
+        let spread = Spread::new(&medium);
+        let all: DVec3 = spread.high[1].iter().copied().sum();
+        assert!((all.element_sum() / 3.0 - BEGIN[0]).abs() < 0.02 && spread.radius_m.is_sorted(), "{spread:?}");
     }
 
     #[test]

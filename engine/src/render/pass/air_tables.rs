@@ -287,13 +287,7 @@ impl AirBaker {
         pass.set_bind_group(0, &group, &[]);
         let [w, h] = TRANSMITTANCE_SIZE;
         pass.dispatch_workgroups(w.div_ceil(8), h.div_ceil(8), 1);
-        let inputs = Inputs {
-            air,
-            transmittance: &transmittance,
-            linear: &self.linear,
-            irradiance: &self.values.irradiance,
-            slot,
-        };
+        let inputs = Inputs { air, transmittance: &transmittance, linear: &self.linear, irradiance: &self.values.irradiance, slot };
         self.orders.bake(gpu, pass, &Plan::new(&held.medium), &inputs);
     }
 

@@ -1,0 +1,380 @@
+//! The sky of the model `physical` shot by shot: a climb from the datum to 1,000 km, and eclipses from first to fourth contact, without a
+//! pop; and eclipsed air against the reference with occluders.
+//!
+//! What a pop is, and which pairs of shots are left out: `tests::continuity`. Here as everywhere the bar is 1 %. The whole courses:
+//!
+//! ```text
+//! cargo test --release --workspace --test sky_continuity -- --ignored --skip writes
+//! ```
+
+use engine::air::{Air, Medium};
+use engine::gpu::{Gpu, ShaderLibrary};
+use engine::render::pass::sky_probe::{ProbeOptions, ProbeRay, Prober};
+use engine::render::{OffscreenImage, Renderer, RendererOptions, Target};
+use engine::scene::{AutoOr, Body, Camera, Force, Occluder, Snapshot, Star, Surface};
+use engine::space::relative::{narrow, narrow3};
+use engine::units::{DEG, KM};
+use glam::{DVec3, Mat3, Quat, Vec3};
+use std::collections::BTreeMap;
+use tests::continuity::{Course, Pops, Shot, climb, polar, transit};
+use tests::sky_eclipse;
+use tests::sky_truth::planet;
+
+const TRUTH: &str = include_str!("../reference/sky_eclipse.csv");
+const BAR: f64 = 0.01;
+
+fn views(list: &[(f64, f64)]) -> Vec<DVec3> {
+    list.iter().map(|v| polar(v.0, v.1)).collect()
+}
+
+fn prober(gpu: &Gpu, medium: &Medium) -> Prober {
+    Prober::new(gpu, &ShaderLibrary::checkout(), &medium.clone().into()).expect("its tables are made")
+}
+
+fn told(name: &str, pops: &Pops) {
+    println!("{name}: {} pairs\n  single {:.4}: {}\n  all {:.4}: {}", pops.pairs, pops.single.0, pops.single.1, pops.all.0, pops.all.1);
+}
+
+/// Climbs under a high, a setting and a sunken sun.
+fn climbs(shots: u32, list: &[(f64, f64)]) -> Pops {
+    let gpu = tests::gpu();
+    let planet = planet("earth");
+    let prober = prober(&gpu, &planet.medium);
+    let views = views(list);
+    let shots: Vec<Shot> = climb(shots, planet.medium.top_altitude_m).into_iter().map(|h| Shot::at(h, Vec::new())).collect();
+    let mut all = Pops::default();
+    for sun_zenith in [40.0, 89.5, 95.0] {
+        let course = Course { medium: &planet.medium, sun: (polar(sun_zenith, 0.0), planet.sun_rad), views: &views };
+        let pops = course.pops(&gpu, &prober, &shots);
+        told(&format!("climb, sun at {sun_zenith}°"), &pops);
+        all = all.and(pops);
+    }
+    all
+}
+
+#[test]
+fn a_climb_is_without_a_pop() {
+    let pops = climbs(150, &[(0.0, 0.0), (85.0, 60.0), (90.0, 180.0), (96.0, 0.0), (105.0, 0.0), (180.0, 0.0)]);
+    assert!(pops.single.0 < BAR && pops.all.0 < BAR, "{pops:?}");
+    // That little is what twelve points on a ray make of it.
+    assert!(pops.single.0 > 1e-3 && pops.pairs > 6000, "{pops:?}");
+}
+
+#[test]
+#[ignore = "minutes: two thousand shots"]
+fn a_climb_of_two_thousand_shots_is_without_a_pop() {
+    let list = [
+        (0.0, 0.0),
+        (60.0, 0.0),
+        (60.0, 180.0),
+        (85.0, 60.0),
+        (89.9, 0.0),
+        (90.0, 180.0),
+        (90.5, 60.0),
+        (91.5, 0.0),
+        (93.0, 180.0),
+        (96.0, 0.0),
+        (100.0, 60.0),
+        (105.0, 0.0),
+        (120.0, 180.0),
+        (180.0, 0.0),
+    ];
+    let pops = climbs(2000, &list);
+    assert!(pops.single.0 < BAR && pops.all.0 < BAR, "{pops:?}");
+    assert!(pops.all.0 > 3e-3 && pops.pairs > 200_000, "{pops:?}");
+}
+
+#[test]
+fn a_pop_would_be_found() {
+    // A model that thinks itself a fifth higher as soon as it has left the air, and one that lags by 300 m from 20 km on.
+    let gpu = tests::gpu();
+    let planet = planet("earth");
+    let prober = prober(&gpu, &planet.medium);
+    let views = views(&[(60.0, 0.0), (105.0, 0.0)]);
+    let course = Course { medium: &planet.medium, sun: (polar(40.0, 0.0), planet.sun_rad), views: &views };
+    for (from_m, told) in [(60.0 * KM, 1.2), (20.0 * KM, 0.985)] {
+        let shot = |i: i32| {
+            let mut shot = Shot::at(from_m + 50.0 * f64::from(i), Vec::new());
+            shot.told_m *= if i > 0 { told } else { 1.0 };
+            shot
+        };
+        let shots: Vec<Shot> = (-3..4).map(shot).collect();
+        let pops = course.pops(&gpu, &prober, &shots);
+        assert!(pops.single.0 > BAR, "{told}: {pops:?}");
+    }
+}
+
+/// Eyes under an eclipse: altitude, the moon's radius over the sun's, by how much the shadow's axis misses.
+const EYES: [(f64, f64, f64); 8] = [
+    (2.0, sky_eclipse::RATIO, 0.0),
+    (2.0, sky_eclipse::RATIO, 50e3),
+    (2.0, sky_eclipse::RATIO, 800e3),
+    (2.0, 0.95, 0.0),
+    (2.0, 1.0, 0.0),
+    (10.0 * KM, sky_eclipse::RATIO, 0.0),
+    (400.0 * KM, sky_eclipse::RATIO, 0.0),
+    (400.0 * KM, 0.95, 0.0),
+];
+
+fn transits(shots: u32, eyes: &[(f64, f64, f64)], suns: &[f64]) -> Pops {
+    let gpu = tests::gpu();
+    let planet = planet("earth");
+    let prober = prober(&gpu, &planet.medium);
+    let mut all = Pops::default();
+    for sun_zenith in suns {
+        for (altitude_m, ratio, miss_m) in eyes {
+            let sun = (polar(*sun_zenith, 0.0), planet.sun_rad);
+            let views = if *altitude_m > 100.0 * KM {
+                views(&[(180.0, 0.0), (150.0, 90.0), (120.0, 180.0), (108.0, 0.0), (111.0, 90.0)])
+            } else {
+                // Two of them at the sun and beside it, along the shadow's axis.
+                views(&[(0.0, 0.0), (60.0, 90.0), (85.0, 180.0), (89.0, 90.0), (*sun_zenith, 0.0), (sun_zenith - 0.1, 0.02)])
+            };
+            let course = Course { medium: &planet.medium, sun, views: &views };
+            let pops = course.pops(&gpu, &prober, &transit(&planet.medium, sun, *altitude_m, *ratio, *miss_m, shots));
+            told(&format!("eclipse from {altitude_m} m, sun at {sun_zenith}°, ratio {ratio}, missed by {miss_m} m"), &pops);
+            all = all.and(pops);
+        }
+    }
+    all
+}
+
+#[test]
+fn an_eclipse_is_without_a_pop() {
+    let pops = transits(45, &[EYES[0], EYES[3], EYES[5], EYES[6]], &[64.0]);
+    assert!(pops.single.0 < BAR && pops.all.0 < BAR, "{pops:?}");
+    assert!(pops.all.0 > 1e-3 && pops.pairs > 2000, "{pops:?}");
+}
+
+#[test]
+#[ignore = "minutes: sixteen eclipses of six hundred shots"]
+fn eclipses_of_six_hundred_shots_are_without_a_pop() {
+    let pops = transits(600, &EYES, &[64.0, 80.0]);
+    assert!(pops.single.0 < BAR && pops.all.0 < BAR, "{pops:?}");
+    assert!(pops.all.0 > 1e-3 && pops.pairs > 100_000, "{pops:?}");
+}
+
+#[test]
+#[ignore = "minutes: writes reference/sky_eclipse.csv; run with --release"]
+fn writes_the_eclipse() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/reference/sky_eclipse.csv");
+    std::fs::write(path, sky_eclipse::write(0.01)).expect("it can be written");
+}
+
+/// Errors of a class: of single scattering and of all orders, both by the radiance of all orders, %.
+#[test]
+fn eclipsed_air_is_that_of_the_reference() {
+    let gpu = tests::gpu();
+    let planet = planet("earth");
+    let prober = prober(&gpu, &planet.medium);
+    let row = |v: DVec3, w: f64| [narrow(v.x), narrow(v.y), narrow(v.z), narrow(w)];
+    let mut classes: BTreeMap<String, Vec<[f64; 2]>> = BTreeMap::new();
+    for truth in sky_eclipse::read(TRUTH) {
+        let ray = &truth.ray;
+        let up = row(ray.from_m.normalize(), ray.from_m.length() - planet.medium.bottom_radius_m);
+        let asked = ProbeRay { up, ray: row(ray.direction, 0.0), sun: row(ray.sun, ray.sun_rad) };
+        let occluder = |o: &engine::air::reference::Sphere| Occluder { id: 1, centre_m: narrow3(o.centre_m), radius_m: narrow(o.radius_m) };
+        let find = |multiple| {
+            let occluders = ray.occluders.iter().map(occluder).collect();
+            prober.ask(&gpu, &[asked], &ProbeOptions { multiple, occluders, ..ProbeOptions::default() }).expect("it marches")[0].radiance
+        };
+        let (single, all) = (find(false), find(true));
+        let errors = classes.entry(truth.class.clone()).or_default();
+        for c in 0..3 {
+            let total = truth.total.0[c];
+            errors.push([f64::from(single[c]) - truth.single[c], f64::from(all[c]) - total].map(|e| 100.0 * e / total));
+        }
+    }
+    let stated = [
+        ("ground centre", 11.4, 26.9),
+        ("ground inside", 9.7, 28.9),
+        ("ground edge", 13.8, 28.8),
+        ("ground out", 6.6, 16.5),
+        ("ground half", 0.4, 1.7),
+        ("ground first", 0.5, 1.1),
+        ("10 km centre", 12.6, 28.9),
+        ("10 km inside", 16.5, 33.6),
+        ("10 km edge", 20.1, 39.8),
+        ("10 km out", 10.6, 25.1),
+        ("10 km half", 0.4, 1.3),
+        ("10 km first", 0.6, 1.6),
+        ("400 km centre", 8.9, 27.6),
+        ("400 km inside", 6.2, 21.5),
+        ("400 km edge", 7.9, 23.8),
+        ("400 km out", 1.7, 4.9),
+        ("400 km half", 0.4, 1.4),
+        ("400 km first", 0.6, 1.6),
+    ];
+    let mut wrong = Vec::new();
+    for (class, rms, worst) in stated {
+        let errors = &classes[class];
+        let root = |k: usize| (errors.iter().map(|e| e[k] * e[k]).sum::<f64>() / errors.len() as f64).sqrt();
+        let most = |k: usize| errors.iter().map(|e| e[k].abs()).fold(0.0, f64::max);
+        let (first, all, most_first, most_all) = (root(0), root(1), most(0), most(1));
+        println!("{class:14} single {first:.2} % (worst {most_first:.2}), all orders {all:.1} % (worst {most_all:.1})");
+        let near = |x: f64, stated: f64| (x / stated - 1.0).abs() < 0.34;
+        if !(near(all, rms) && near(most_all, worst) && first < 0.1 && most_first < 0.2) {
+            wrong.push(class);
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:?}");
+}
+
+/// The picture of a climb: the Earth of the reference as a smooth body under its air, looked at along a fixed direction.
+struct Picture {
+    pitch_deg: f64,
+}
+
+/// A pixel of 2.5 mrad, as in a picture 400 rows high: up, above and along the level, over the horizon of every height, and down.
+const PITCHES_DEG: [f64; 7] = [60.0, 8.0, 0.5, -3.0, -9.0, -18.0, -80.0];
+const FOV_DEG: f64 = 3.44;
+const SIDE: u32 = 24;
+const SUN_CD: Vec3 = Vec3::new(2.9e27, 2.86e27, 2.8e27);
+
+impl Picture {
+    /// Columns right, up and forward.
+    fn axes(&self) -> Mat3 {
+        let forward = narrow3(polar(90.0 - self.pitch_deg, 0.0));
+        let right = forward.cross(Vec3::Z).normalize_or(Vec3::NEG_Y);
+        Mat3::from_cols(right, right.cross(forward), forward)
+    }
+
+    fn scene(&self, air: &Air, altitude_m: f64, sun: (DVec3, f64), ev: f32) -> Snapshot {
+        let bottom = air.medium.bottom_radius_m;
+        let axes = self.axes();
+        let body = Body {
+            id: 3,
+            centre_m: narrow3(DVec3::NEG_Z * (bottom + altitude_m)),
+            radius_m: narrow(bottom),
+            icrf_from_fixed: Quat::IDENTITY,
+            camera_altitude_m: narrow(altitude_m),
+            camera_up: Vec3::Z,
+            sun_direction: narrow3(sun.0),
+            sun_angular_radius_rad: narrow(sun.1),
+            sun_illuminance_lx: SUN_CD / 2.2379e22,
+            occluders: Vec::new(),
+            albedo: Vec3::splat(0.1),
+            surface: Surface::Smooth,
+            air: Some(air.clone()),
+        };
+        Snapshot {
+            camera: Camera {
+                view_from_icrf: Quat::from_mat3(&Mat3::from_cols(axes.x_axis, axes.y_axis, -axes.z_axis)).conjugate(),
+                fov_y_rad: narrow(FOV_DEG * DEG),
+                near_m: 0.2,
+                size_px: [SIDE; 2],
+            },
+            star: Star { id: 0, centre_m: narrow3(sun.0 * 1.496e11), radius_m: narrow(1.496e11 * sun.1.sin()), intensity_cd: SUN_CD },
+            bodies: vec![body],
+            ships: Vec::new(),
+            exposure: AutoOr::Ev100(ev),
+            adapt_s: None,
+            force: Force::default(),
+        }
+    }
+
+    /// Zenith angle of each pixel's middle and half of its diagonal, rad.
+    fn pixels(&self) -> (Vec<f64>, f64) {
+        let (axes, tan) = (self.axes(), (0.5 * FOV_DEG * DEG).tan());
+        let at = |i: u32| (f64::from(2 * i + 1) / f64::from(SIDE) - 1.0) * tan;
+        let ray = |i: u32| axes.as_dmat3() * DVec3::new(at(i % SIDE), -at(i / SIDE), 1.0);
+        ((0..SIDE * SIDE).map(|i| ray(i).normalize().z.acos()).collect(), 2.0_f64.sqrt() * tan / f64::from(SIDE))
+    }
+}
+
+/// How far a pixel of a drawn climb jumps at most beyond what it changes in the shots before and after, as a share of its light (or of a thousandth of
+/// white, where it is darker). Left out are pixels over which the edge of the planet or of its air passes between the shots, and those next to them.
+fn drawn_jump(altitudes: &[Vec<f64>], sun_zenith: f64, ev: f32) -> (f64, String) {
+    let gpu = tests::gpu();
+    let planet = planet("earth");
+    let (medium, air) = (&planet.medium, planet.medium.clone().into());
+    // Aside, so that its disc, which rises over the horizon on the way, is not in view.
+    let sun = (polar(sun_zenith, 60.0), planet.sun_rad);
+    let options = RendererOptions { shaders: ShaderLibrary::checkout(), measure: false };
+    let mut renderer = Renderer::new(&gpu, options).expect("its passes compile");
+    let image = OffscreenImage::new(&gpu, [SIDE; 2]);
+    let edges = |h: f64| {
+        let edge = |above: f64| {
+            (h >= above).then(|| std::f64::consts::PI - ((medium.bottom_radius_m + above) / (medium.bottom_radius_m + h)).asin())
+        };
+        [edge(0.0), edge(medium.top_altitude_m)]
+    };
+    let floor = 1e-3 * 1.2 * f64::from(ev.exp2());
+    let mut worst = (0.0, String::new());
+    for picture in PITCHES_DEG.map(|pitch_deg| Picture { pitch_deg }) {
+        let (zeniths, half) = picture.pixels();
+        for run in altitudes {
+            let mut drawn: Vec<Vec<f32>> = Vec::new();
+            for h in run {
+                renderer.render(&gpu, &picture.scene(&air, *h, sun, ev), Target::Image(&image), None).expect("it is drawn");
+                drawn.push(renderer.read_hdr(&gpu).expect("it can be read").rgba);
+            }
+            for i in 2..run.len().saturating_sub(1) {
+                for (pixel, zenith) in zeniths.iter().enumerate() {
+                    let passes = |k: usize, edge: usize| match (edges(run[k - 1])[edge], edges(run[k])[edge]) {
+                        (Some(a), Some(b)) => a.min(b) < zenith + 3.0 * half && a.max(b) > zenith - 3.0 * half,
+                        (None, None) => false,
+                        _ => {
+                            edge == 1
+                                && *zenith > 0.5 * std::f64::consts::PI - 3.0 * half
+                                && *zenith < 0.5 * std::f64::consts::PI + 3.0 * half
+                        }
+                    };
+                    if (i - 1..=i + 1).any(|k| passes(k, 0) || passes(k, 1)) {
+                        continue;
+                    }
+                    for c in 0..3 {
+                        let light = |k: usize| f64::from(drawn[k][4 * pixel + c]);
+                        let change = |k: usize| (light(k) - light(k - 1)).abs() / light(k).max(light(k - 1)).max(floor);
+                        // Steps of a course need not be even: what changes evenly changes by their ratio.
+                        let even = |k: usize| change(k) * ((run[i] - run[i - 1]) / (run[k] - run[k - 1])).max(1.0);
+                        let jump = change(i) - even(i - 1).max(even(i + 1));
+                        if jump > worst.0 {
+                            worst = (
+                                jump,
+                                format!(
+                                    "sun at {sun_zenith}°, pitch {}°, {:.2} m → {:.2} m, pixel {pixel}, zenith angle {:.2}°, channel {c}: {:.4e} {:.4e} {:.4e} {:.4e} cd/m²",
+                                    picture.pitch_deg,
+                                    run[i - 1],
+                                    run[i],
+                                    zenith / DEG,
+                                    light(i - 2),
+                                    light(i - 1),
+                                    light(i),
+                                    light(i + 1)
+                                ),
+                            );
+                        }
+                    }
+                }
+            }
+        }
+    }
+    println!("{worst:?}");
+    worst
+}
+
+#[test]
+fn a_drawn_climb_does_not_jump() {
+    // Runs of shots out of two thousand: near the ground, through the air, over its top, away.
+    let all = climb(2000, planet("earth").medium.top_altitude_m);
+    let top = all.iter().position(|h| *h >= 60.0 * KM).expect("the top is on the way");
+    let runs: Vec<Vec<f64>> =
+        [60, 300, 800, top - 40, top - 4, top + 4, top + 80, top + 200, 1900].map(|at| all[at..at + 7].to_vec()).to_vec();
+    for (sun_zenith, ev) in [(40.0, 12.0), (95.0, 3.0)] {
+        let worst = drawn_jump(&runs, sun_zenith, ev);
+        assert!(worst.0 < BAR, "{worst:?}");
+        assert!(worst.0 > 1e-4, "{worst:?}");
+    }
+}
+
+#[test]
+#[ignore = "minutes: four pictures of two thousand shots under three suns"]
+fn a_drawn_climb_of_two_thousand_shots_does_not_jump() {
+    let all = climb(2000, planet("earth").medium.top_altitude_m);
+    let above: Vec<f64> = all.into_iter().filter(|h| *h >= 1.0).collect();
+    for (sun_zenith, ev) in [(40.0, 12.0), (89.5, 8.0), (95.0, 3.0)] {
+        let worst = drawn_jump(std::slice::from_ref(&above), sun_zenith, ev);
+        assert!(worst.0 < BAR, "{worst:?}");
+    }
+}
