@@ -43,6 +43,9 @@ pub struct Planet {
     pub sun_rad: f64,
 }
 
+/// Tables that take longer are made once.
+const SLOW_MS: f64 = 2000.0;
+
 /// How an air is drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Technique {
@@ -128,7 +131,7 @@ impl<'a> SkyBench<'a> {
         Ok(bench)
     }
 
-    /// Compiles a technique and makes its tables; they are made twice, and the faster is counted.
+    /// Compiles a technique and makes its tables; where that is quick they are made twice, and the faster is counted.
     ///
     /// # Errors
     /// As [`SkyBench::new`].
@@ -150,6 +153,9 @@ impl<'a> SkyBench<'a> {
                 break;
             }
             own_ms = own_ms.min(timed(self.gpu, &mut self.timer, self.clock, |pass| painter.bake(self.gpu, pass))?);
+            if own_ms > SLOW_MS {
+                break;
+            }
         }
         Ok(Prepared { painter, air, own_ms })
     }

@@ -125,7 +125,14 @@ fn fly_one(gpu: &Gpu, test: &Test, full: bool) -> Result<Flight, StudioError> {
     let relief = Arc::new(relief());
     let surface = if test.fine_mesh { Surface::Tiles(mesh(&relief)) } else { Surface::Smooth };
     let vertices = if let Surface::Tiles(set) = &surface { set.tiles.len() * TILE_VERTICES } else { BALL_VERTICES };
-    let (step_s, repeats) = if full { (1, 8) } else { (5, 2) };
+    // Where a processor stands in for a GPU a frame of his sizes takes up to seconds: fewer moments of the flight are looked at.
+    let slow = gpu.info.device_type == wgpu::DeviceType::Cpu;
+    let (step_s, repeats) = match (full, slow, test.wide) {
+        (true, false, _) => (1, 8),
+        (true, true, false) => (5, 2),
+        (true, true, true) => (10, 2),
+        (false, ..) => (5, 2),
+    };
     let mut bake_ms = None;
     let mut frames = Vec::new();
     for at in (0..=FLIGHT_S).step_by(step_s) {
