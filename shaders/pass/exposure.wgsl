@@ -16,8 +16,9 @@ struct Meter {
 @group(1) @binding(2) var<storage, read_write> next: Exposure;
 @group(1) @binding(3) var<uniform> meter: Meter;
 
-// Twin of the constant in engine::light::exposure.
+// Twins of the constants in engine::light::exposure.
 const BRIGHT_HALF_EV: f32 = 0.6;
+const HIGHLIGHT_COST_EV: f32 = 1.3;
 
 var<workgroup> local_bins: array<atomic<u32>, 256>;
 
@@ -71,7 +72,8 @@ fn settle() {
     // EV100 = log2(L · 100 / 12.5); a picture with nothing in it is exposed for the darkest.
     var ev = meter.limit.x;
     if weight > 0.0 {
-        let middle = max(sum / weight - BRIGHT_HALF_EV, bright - meter.range.w);
+        let usual = sum / weight - BRIGHT_HALF_EV;
+        let middle = max(usual, min(bright - meter.range.w, usual + HIGHLIGHT_COST_EV));
         ev = clamp(middle + 3.0 + dimness_ev(exp2(sum / weight)), meter.limit.x, meter.limit.y);
     }
     ev = max(ev, meter.limit.z);

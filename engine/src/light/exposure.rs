@@ -17,6 +17,9 @@ pub const BRIGHT_HALF_EV: f32 = 0.6;
 /// Share of the counted pixels, and stops above middle grey that the luminance which this share does not exceed may stand at most: the glow about
 /// a low sun keeps its colour, and the rest is darker for it, as a photographer would have it.
 pub const HIGHLIGHT: [f32; 2] = [0.985, 1.8];
+/// Stops by which the rest is darker for that at most: in empty space a star's disc alone is more than that share of what is counted, and the limb
+/// beside it must not drown.
+pub const HIGHLIGHT_COST_EV: f32 = 1.3;
 /// Rates of adaptation to brighter and to darker light, 1/s.
 pub const ADAPT_PER_S: [f32; 2] = [3.0, 1.5];
 /// EV100 that a meter which sees nothing gives: a starry night.
@@ -62,7 +65,8 @@ pub fn ev100_of_histogram(bins: &[u32]) -> f32 {
         bright = if before < total * HIGHLIGHT[0] { log2 } else { bright };
         before = after;
     }
-    let middle = (sum / weight - BRIGHT_HALF_EV).max(bright - HIGHLIGHT[1]);
+    let usual = sum / weight - BRIGHT_HALF_EV;
+    let middle = usual.max((bright - HIGHLIGHT[1]).min(usual + HIGHLIGHT_COST_EV));
     if weight > 0.0 { ev100_of_luminance(middle.exp2()) + dimness_ev((sum / weight).exp2()) } else { EV100_DARK }
 }
 
@@ -91,10 +95,14 @@ mod tests {
             bins[0] = 1_000_000; // black sky does not vote
             let wanted = ev100_of_luminance(luminance) - BRIGHT_HALF_EV + dimness_ev(luminance);
             assert!((ev100_of_histogram(&bins) - wanted).abs() < 0.11, "{luminance}");
-            // A glow over three hundredths of the picture, six stops brighter, is held; over one hundredth it is not.
-            bins[bin_of_luminance(64.0 * luminance)] = 30;
-            let held = ev100_of_luminance(64.0 * luminance) - HIGHLIGHT[1] + dimness_ev(luminance);
+            // A glow over three hundredths of the picture is held, one of the brightness of a star's disc at no more than its cost; over one hundredth it is not.
+            bins[bin_of_luminance(5.0 * luminance)] = 30;
+            let held = ev100_of_luminance(5.0 * luminance) - HIGHLIGHT[1] + dimness_ev(luminance);
             assert!((ev100_of_histogram(&bins) - held).abs() < 0.2, "{luminance}");
+            bins[bin_of_luminance(5.0 * luminance)] = 0;
+            bins[bin_of_luminance(1e5 * luminance)] = 30;
+            assert!((ev100_of_histogram(&bins) - wanted - HIGHLIGHT_COST_EV).abs() < 0.2, "{luminance}");
+            bins[bin_of_luminance(1e5 * luminance)] = 0;
             bins[bin_of_luminance(64.0 * luminance)] = 10;
             assert!((ev100_of_histogram(&bins) - wanted).abs() < 0.11, "{luminance}");
         }
