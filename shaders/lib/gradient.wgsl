@@ -2,17 +2,26 @@
 //
 // Numbers of Sky: settings[0] stretch, stretch + fade stretch, visibility in m, transparency; settings[1] brightness / π, opacity, 0, 0.
 // Maps are linear RGBA, read between their texels by hand: filters of samplers keep 8 bits. Bound by pass/sky_gradient.wgsl.
+// Under an eclipse the air's own light fades, all along a ray alike; what it makes of light from behind does not.
 
-#include "lib/sky_pixel.wgsl"
+#include "lib/eclipse_along.wgsl"
 
 fn gradient_light(
-    body: Body, air: Air, shell_map: texture_2d<f32>, ground_map: texture_2d<f32>, sky: Sky, view: SkyView,
+    body: Body, air: Air, shell_map: texture_2d<f32>, ground_map: texture_2d<f32>, star: vec4<f32>, sky: Sky, view: SkyView,
 ) -> AirLight {
     let path = air_path(air, body.up.xyz, body.up.w, view.ray);
     let end = sky_end(air, path, view);
     if end <= 0.0 {
         return AirLight(vec3<f32>(0.0), vec3<f32>(1.0));
     }
+    let light = gradient_painted(body, air, shell_map, ground_map, sky, view, path, end);
+    return AirLight(light.radiance * eclipse_along(body, star, air, path, view.ray, end), light.transmittance);
+}
+
+// Without eclipses.
+fn gradient_painted(
+    body: Body, air: Air, shell_map: texture_2d<f32>, ground_map: texture_2d<f32>, sky: Sky, view: SkyView, path: AirPath, end: f32,
+) -> AirLight {
     let top = air.shape.y;
     let sun = body.sun.xyz;
     let brightness = sky.settings[1].x;

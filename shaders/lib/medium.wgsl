@@ -9,7 +9,7 @@
 
 override MEDIA_TABLES: bool = true;
 
-const MAX_AIRS: u32 = 16u;
+const MAX_AIRS: u32 = 32u;
 const AIR_FLOOR_M: f32 = 10000.0;  // Medium::FLOOR_M
 const MEDIA_COLUMNS: u32 = 1024u;
 const MEDIA_EXTINCTION: u32 = 4u;

@@ -11,7 +11,7 @@ const SKY_SETTINGS: u32 = 8u;
 const SKY_SINGLE: u32 = 1u;  // flag: orders beyond the first are left out (probes only)
 
 struct Sky {
-    ids: vec4<u32>,                              // index of the body; steps of a long march; flags; 0
+    ids: vec4<u32>,                              // index of the body; steps of a long march; flags; of a front: index of the bank
     settings: array<vec4<f32>, SKY_SETTINGS>,    // the model's numbers, in its own order
 }
 

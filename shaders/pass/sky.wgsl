@@ -1,10 +1,11 @@
-// What the pass of every model of air has beside its model: what it binds, the vertex stage of its draw, its picture (`fragment`), and its
-// answer to given rays (`probe`). A model's file shaders/pass/sky_<model>.wgsl includes this one and defines
+// What the pass of every model of air has beside its model: what it binds, the vertex stage of its draw, its picture (`fragment`; up to a bank
+// of fog, `front`), and its answer to given rays (`probe`). A model's file shaders/pass/sky_<model>.wgsl includes this one and defines,
+// with what it binds as group 3,
 //
 //     fn sky_light(body: Body, star: vec4<f32>, view: SkyView) -> AirLight  // radiance: cd/m²; in a probe, per unit of the star's illuminance
 //
-// with what it binds as group 3; so this file is no shader by itself. Rust side: engine/src/render/pass/sky/mod.rs and sky_probe.rs.
-// Not here: what a pixel is (lib/sky_pixel.wgsl).
+// so that this file is no shader by itself. Rust side: engine/src/render/pass/sky/mod.rs and sky_probe.rs. Not here: what a pixel is
+// (lib/sky_pixel.wgsl).
 //
 // `sky`, like all that a probe's branches hang on, is no uniform: see `compute_pipeline` of engine/src/render/pipeline.rs.
 
@@ -53,6 +54,24 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
     let view = sky_view(frame, in.uv, textureLoad(depth, pixel, 0));
     let rays = sky_rays(body, airs.list[u32(body.ids.z)], view);
     return sky_over(textureLoad(opaque, pixel, 0).rgb, sky_sum(body, view, rays), rays, exposure);
+}
+
+struct Front {
+    @location(0) radiance: vec4<f32>,  // pre-exposed
+    @location(1) transmittance: vec4<f32>,
+}
+
+// The air up to the middle of the way through a bank of fog that lies in it, at every second pixel of every second row: FRONT_RATE.
+@fragment
+fn front(in: Varying) -> Front {
+    let pixel = 2u * vec2<u32>(in.position.xy);
+    let body = bodies.list[sky.ids.x];
+    var view = sky_view(frame, (vec2<f32>(pixel) + 0.5) * frame.size.zw, textureLoad(depth, pixel, 0));
+    let bank = bodies.list[sky.ids.w].centre.xyz;
+    view.surface = min(view.surface, max(dot(view.ray, bank), 0.0));
+    view.datum = false;
+    let light = sky_light(body, frame.star, view);
+    return Front(vec4<f32>(to_hdr(light.radiance, exposure.pre), 1.0), vec4<f32>(light.transmittance, 1.0));
 }
 
 @compute @workgroup_size(64)

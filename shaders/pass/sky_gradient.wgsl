@@ -7,5 +7,5 @@
 @group(3) @binding(1) var ground_map: texture_2d<f32>;
 
 fn sky_light(body: Body, star: vec4<f32>, view: SkyView) -> AirLight {
-    return in_starlight(body, gradient_light(body, airs.list[u32(body.ids.z)], shell_map, ground_map, sky, view));
+    return in_starlight(body, gradient_light(body, airs.list[u32(body.ids.z)], shell_map, ground_map, star, sky, view));
 }

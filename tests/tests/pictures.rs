@@ -4,6 +4,8 @@
 //! All are stills of a few thousand pixels, drawn by one renderer and read before exposure (cd/m²). Not here: what the sky's
 //! radiance should be (`sky.rs`), what the World does (`replays.rs`).
 
+use engine::air::Model;
+use engine::air::model::ViewTable;
 use engine::render::{FrameReport, HdrImage};
 use engine::scene::Force;
 use engine::time::SimTime;
@@ -14,7 +16,7 @@ use game::world::World;
 use game::world::ship::contact;
 use std::collections::BTreeMap;
 use std::path::Path;
-use std::sync::{Mutex, MutexGuard, OnceLock};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock};
 
 const SIZE: (u32, u32) = (96, 54);
 
@@ -279,6 +281,28 @@ fn the_sky_darkens_smoothly_on_a_climb_into_space() {
         assert!(l[1] <= 1.01 * l[0] && f64::from(l[1] / l[0]) >= 0.95 * least, "{} cd/m² at {} m, {} at {} m", l[0], h[0], l[1], h[1]);
     }
     assert!(light[0] > 300.0 && light[23] < 1e-3, "{} cd/m² at 10 m, {} at 1,000 km", light[0], light[23]);
+}
+
+#[test]
+fn the_sea_mirrors_the_sky_of_view_table() {
+    // Elek's sea is a flat mirror: below the horizon there stands what is as far above it, by (1 − cos) of the view [Elek 2008, eq. 3.8].
+    let mut stage = stage();
+    let mut world = stage.worlds["leo"].clone();
+    let earth = world.system.find("earth").expect("there is one");
+    let system = Arc::make_mut(&mut world.system);
+    system.bodies[usize::from(earth.0)].look.as_mut().expect("it has air").model = Model::ViewTable(ViewTable::default());
+    stage.worlds.insert("mirror", world);
+    let (size, fov_deg) = ((64, 64), 16.0);
+    let taken = stage.take("mirror", Some(NOON), "at:earth,30,-40,3,sun+150,0,16", size, Force::default());
+    stage.worlds.remove("mirror");
+    let row = |y: usize| (0..64).map(|x| f64::from(taken.rgb(x, y)[1])).sum::<f64>() / 64.0;
+    for k in [8, 12, 16, 20] {
+        let rise = (f64::from(k) + 0.5) / 64.0 * fov_deg;
+        let (above, below) = (row(31 - k as usize), row(32 + k as usize));
+        let truth = above * (1.0 - rise.to_radians().sin());
+        println!("{rise:.1}°: {below:.0} cd/m² of {above:.0}, by the equation {truth:.0}");
+        assert!((below / truth - 1.0).abs() < 0.1, "{rise}° below the horizon: {below} cd/m², by the equation {truth}");
+    }
 }
 
 #[test]

@@ -2,6 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
+/// What [`AirReport::tables`] says of tables that were made for this frame.
+pub const TABLES_MADE: &str = "made: new or changed";
+
 /// What became of one pass.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PassReport {
@@ -55,6 +58,11 @@ impl FrameReport {
             if let Some(first) = earlier.pass(&pass.name).filter(|p| p.ran) {
                 pass.ran = true;
                 pass.reason.clone_from(&first.reason);
+            }
+        }
+        for air in &mut self.airs {
+            if let Some(first) = earlier.airs.iter().find(|a| a.body == air.body && a.tables == TABLES_MADE) {
+                air.tables.clone_from(&first.tables);
             }
         }
     }

@@ -11,7 +11,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::{DMat3, DVec3, Vec3};
 
 /// Atmospheres that the tables hold at once.
-pub const MAX_AIRS: usize = 16;
+pub const MAX_AIRS: usize = 32;
 /// Columns of the tables of media that are not formulas: `MEDIA_COLUMNS` of `shaders/lib/medium.wgsl`.
 pub const MEDIA_COLUMNS: usize = 1024;
 /// Their rows: scattering of each class, extinction, phase functions.

@@ -14,7 +14,7 @@ use super::{Body, Camera, Ship, Snapshot, Surface};
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
-/// Bodies that a frame may hold (nearest first; further ones are left out).
+/// Bodies that a frame may hold (the first ones; further ones are left out, unless they are points of light).
 pub const MAX_BODIES: usize = 32;
 /// Occluders of one body.
 pub const MAX_OCCLUDERS: usize = 8;

@@ -121,7 +121,7 @@ pub struct Snapshot {
     pub camera: Camera,
     /// The light.
     pub star: Star,
-    /// Planets and moons whose picture is at least a fraction of a pixel, nearest first.
+    /// Planets and moons, nearest first; those that are points of light may come last.
     pub bodies: Vec<Body>,
     /// Ships, nearest first.
     pub ships: Vec<Ship>,

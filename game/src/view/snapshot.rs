@@ -11,6 +11,7 @@ use crate::world::eclipse::{self, Sky};
 use crate::world::ship::Rigid;
 use crate::world::system::{self, System};
 use engine::orbit::{BodyId, State};
+use engine::render::pass::smooth_body::POINT_BELOW_PX;
 use engine::scene::{Body, Camera, Force, Occluder, Ship, Snapshot, Star, Surface};
 use engine::space::relative::{narrow, narrow3, rotation};
 use engine::space::{Fixed, Icrf, Position, Rotation};
@@ -23,9 +24,6 @@ use std::sync::Arc;
 const NEAR_M: f32 = 0.1;
 /// Bodies whose disc has a radius of fewer pixels than this are drawn smooth, without tiles.
 const TILES_FROM_PX: f64 = 6.0;
-
-/// The air of a disc with a smaller radius than this is left out: its tables would be baked for nothing that can be seen.
-const AIR_FROM_PX: f64 = 0.5;
 
 /// How far the drawn ground may depart from the true one, pixels.
 const TILE_ERROR_PX: f64 = 1.0;
@@ -62,7 +60,10 @@ pub fn snapshot(world: &World, rig: &Rig, picture: &Picture) -> (Snapshot, Eye) 
     let stage = Stage { system: &world.system, sky: &sky, eye: &eye, camera: &camera };
     let mut bodies: Vec<Body> = (1..world.system.bodies.len()).map(|i| stage.body(id(i))).collect();
     bodies.extend(fog::banks(&stage));
-    bodies.sort_by(|a, b| a.centre_m.length().total_cmp(&b.centre_m.length()));
+    // A frame holds so many and no more; points of light are drawn without it.
+    let point =
+        |body: &Body| body.radius_m < POINT_BELOW_PX * camera.pixel_rad() * body.centre_m.length() && body.surface == Surface::Smooth;
+    bodies.sort_by(|a, b| point(a).cmp(&point(b)).then(a.centre_m.length().total_cmp(&b.centre_m.length())));
     let ship = ship(world, rig, &stage, &rigid, &bodies);
     let snapshot = Snapshot {
         camera,
@@ -154,7 +155,7 @@ impl Stage<'_> {
             occluders: self.occluders(self.sky.position(id), shell, Some(id)),
             albedo: body.albedo,
             surface,
-            air: body.look.as_ref().filter(|_| radius_px >= AIR_FROM_PX).cloned(),
+            air: body.look.clone(),
         }
     }
 }

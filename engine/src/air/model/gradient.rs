@@ -9,7 +9,10 @@
 //! the camera; `height` falls from 1 at the surface to 0 at the edge; something drawn within the air but above the datum takes the
 //! ground's formula by its `height`, and the shell by the rest and by how much of the way lies before it.
 //!
-//! GPU twin: `shaders/lib/gradient.wgsl`. Not here: eclipses in the air, which this model has not.
+//! Of eclipses the article knows nothing: here the air's own light is multiplied by the free fraction of the sun's disc, averaged along the ray,
+//! on the GPU as for all models that keep light in tables (`shaders/lib/eclipse_along.wgsl`).
+//!
+//! GPU twin: `shaders/lib/gradient.wgsl`.
 
 use super::super::RangeError;
 use super::maps::ColourMap;

@@ -18,6 +18,7 @@ use crate::gpu::texture::{Texture, linear_sampler};
 use crate::gpu::{Gpu, ShaderLibrary};
 use crate::render::RenderError;
 use crate::render::pipeline::{compute_pipeline, loaded_entry, uniform_entry};
+use crate::render::report::TABLES_MADE;
 use crate::render::shared::{AirTables, FrameContext};
 use crate::render::targets::HDR;
 use crate::scene::gpu_data::{AirUniform, AirsUniform, MAX_AIRS, MEDIA_COLUMNS, MEDIA_ROWS, media_rows};
@@ -155,7 +156,7 @@ impl AirBaker {
                 (Some(why), _) => format!("none: {why}"),
                 (None, Some(slot)) if slot.part == Part::Bare => "none: its model asks none".to_owned(),
                 (None, Some(slot)) if slot.baked => "as they were made".to_owned(),
-                (None, Some(_)) => "made: new or changed".to_owned(),
+                (None, Some(_)) => TABLES_MADE.to_owned(),
                 (None, None) => "none".to_owned(),
             });
             slots.push(slot);

@@ -206,7 +206,7 @@ impl<'a> SkyBench<'a> {
             ],
         });
         let rect = Rect::whole(self.targets.size);
-        prepared.painter.before(&mut f, &Draw { body, air: &prepared.air, rect, light: &light, picture: &picture });
+        prepared.painter.before(&mut f, &Draw { body, air: &prepared.air, rect, light: &light, picture: &picture, held: false });
         let mut pass = f.draw_full_screen("sky", &self.targets.aerial.view, false);
         pass.set_pipeline(prepared.painter.pipeline());
         pass.set_bind_group(1, &light, &[]);

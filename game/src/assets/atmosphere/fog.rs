@@ -4,17 +4,28 @@
 
 use super::layers::check_names;
 use super::{Datum, tell};
+use crate::assets::fault::Fault;
 use crate::assets::reader::{ANY, Reader};
 use crate::assets::tree::Node;
 use crate::world::system::Fog;
 use engine::air::model::Thickness;
+use engine::scene::gpu_data::MAX_BODIES;
 use engine::space::sphere::direction_of_lat_lon;
 use engine::units::DEG;
+
+/// Banks of one body that a picture holds, with the body itself and a moon.
+pub const MOST: usize = MAX_BODIES - 2;
 
 /// Reads the list; what is out of range is written down.
 pub fn read(r: &Reader<'_>, datum: Datum) -> Vec<Fog> {
     let tables = r.tables("fog");
     check_names(&tables);
+    if let Some(first) = tables.get(MOST) {
+        let message =
+            format!("{} banks of fog: a picture holds {MAX_BODIES} worlds and banks, so that the farthest will be left out", tables.len());
+        let help = format!("{MOST} at most; one large bank costs less than several small ones");
+        r.fault(Fault::warning(&first.node.at, message).help(Some(help)));
+    }
     tables.iter().filter_map(|t| bank(t, datum)).collect()
 }
 

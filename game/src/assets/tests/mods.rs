@@ -418,6 +418,13 @@ fn banks_of_fog_are_placed_and_their_faults_told() {
     let engine::air::Model::Thickness(look) = &fog[0].air.model else { panic!("{:?}", fog[0].air.model) };
     assert_eq!((look.opacity, look.shadow), (2.0, engine::air::model::thickness::ShadowShape::Cylinder));
     assert_eq!(fog[1].air.model, engine::air::Model::Thickness(engine::air::model::Thickness::default()));
+    let most = crate::assets::atmosphere::fog::MOST;
+    put_fog(&bank.repeat(most));
+    let warnings = || load_system(dir.path(), &[], "t").unwrap().warnings.clone();
+    assert!(!warnings().iter().any(|w| w.contains("banks of fog")), "{:?}", warnings());
+    put_fog(&bank.repeat(most + 3));
+    let told = |w: &String| w.contains("33 banks of fog: a picture holds 32") && w.contains("30 at most");
+    assert!(warnings().iter().any(told), "{:?}", warnings());
     put_fog(&bank.replace("radius_m = 500.0", "radius_m = -5.0\nradus_m = 1.0\nthickness = { opacity = -1.0 }"));
     let told = load_system(dir.path(), &[], "t").unwrap_err().text();
     for part in ["radius_m", "radus_m", "opacity"] {

@@ -2,14 +2,14 @@
 
 use super::model_name;
 use crate::air::Air;
-use crate::render::pass::smooth_body::radius_px;
+use crate::render::pass::smooth_body::{POINT_BELOW_PX, radius_px};
 use crate::scene::gpu_data::{MAX_AIRS, MAX_BODIES};
 use crate::scene::{Body, Snapshot, Surface};
 use crate::space::relative::narrow;
 use glam::Vec3;
 
-/// Air around a disc of a smaller radius than this, in pixels, is not drawn.
-pub const AIR_BELOW_PX: f32 = 0.5;
+/// Air around a disc of a smaller radius than this, in pixels, is not drawn: the body is a point of light, and its albedo has its air in it.
+pub const AIR_BELOW_PX: f32 = POINT_BELOW_PX;
 /// A rectangle that covers more of the picture than this is drawn as the whole of it: that saves a copy.
 const NEARLY_WHOLE: f32 = 0.8;
 /// Why an air beside or behind the picture is not drawn.
@@ -39,6 +39,8 @@ pub struct Choice {
     pub model: &'static str,
     /// What its air covers.
     pub rect: Rect,
+    /// Place in the list of the body in whose air it lies.
+    pub held_by: Option<usize>,
     /// Why it is drawn over that.
     pub reason: String,
     /// Why it is not drawn.
@@ -86,22 +88,29 @@ impl Rect {
 
 /// Every body with air, far to near, with what becomes of it. `slots` are those of the air tables, by body.
 pub fn choose(scene: &Snapshot, slots: &[Option<u32>]) -> Vec<Choice> {
-    let one = |i: usize| {
-        let body = scene.bodies.get(i)?;
-        Some(choice(scene, i, body, body.air.as_ref()?, slots.get(i).copied().flatten()))
+    let one = |held: Held| {
+        let body = scene.bodies.get(held.body)?;
+        let chosen = choice(scene, held.body, body, body.air.as_ref()?, slots.get(held.body).copied().flatten());
+        Some(Choice { held_by: held.by, ..chosen })
     };
     far_to_near(scene).into_iter().filter_map(one).collect()
+}
+
+/// A body's air, and the body in whose air it lies.
+struct Held {
+    body: usize,
+    by: Option<usize>,
 }
 
 /// Bodies with air in the order in which their shells are laid over the picture.
 ///
 /// Two shells apart from each other lie on either side of the plane of equal powers, d² − R²: whatever the ray, the one of less power to the
 /// camera comes first on it. Shells within another, as banks of fog are, follow the one that holds them.
-fn far_to_near(scene: &Snapshot) -> Vec<usize> {
-    let shell = |(index, body): (usize, &Body)| {
-        let top_m = narrow(body.air.as_ref()?.medium.top_altitude_m);
-        let power = (body.camera_altitude_m - top_m) * (2.0 * body.radius_m + body.camera_altitude_m + top_m);
-        Some(Shell { index, centre_m: body.centre_m, radius_m: body.radius_m + top_m, power })
+fn far_to_near(scene: &Snapshot) -> Vec<Held> {
+    let shell = |(body, at): (usize, &Body)| {
+        let top_m = narrow(at.air.as_ref()?.medium.top_altitude_m);
+        let power = (at.camera_altitude_m - top_m) * (2.0 * at.radius_m + at.camera_altitude_m + top_m);
+        Some(Shell { body, centre_m: at.centre_m, radius_m: at.radius_m + top_m, power })
     };
     let mut shells: Vec<Shell> = scene.bodies.iter().enumerate().filter_map(shell).collect();
     shells.sort_by(|a, b| b.power.total_cmp(&a.power));
@@ -111,7 +120,7 @@ fn far_to_near(scene: &Snapshot) -> Vec<usize> {
 }
 
 struct Shell {
-    index: usize,
+    body: usize,
     centre_m: Vec3,
     radius_m: f32,
     power: f32,
@@ -123,12 +132,12 @@ impl Shell {
     }
 
     /// Those that are held by `by` and by nothing smaller, each followed by what it holds.
-    fn lay(all: &[Self], by: Option<usize>, into: &mut Vec<usize>) {
+    fn lay(all: &[Self], by: Option<usize>, into: &mut Vec<Held>) {
         for shell in all {
             let holders = all.iter().filter(|other| other.holds(shell));
-            if holders.min_by(|a, b| a.radius_m.total_cmp(&b.radius_m)).map(|other| other.index) == by {
-                into.push(shell.index);
-                Self::lay(all, Some(shell.index), into);
+            if holders.min_by(|a, b| a.radius_m.total_cmp(&b.radius_m)).map(|other| other.body) == by {
+                into.push(Held { body: shell.body, by });
+                Self::lay(all, Some(shell.body), into);
             }
         }
     }
@@ -280,7 +289,7 @@ mod tests {
         let why = |scene: &Snapshot, i| without_tables(scene, i);
         assert_eq!(why(&scene, 0), None);
         assert_eq!(why(&scene, 1).as_deref(), Some(OUT_OF_VIEW));
-        assert!(why(&scene, 2).is_some_and(|w| w.contains("under 0.5")));
+        assert!(why(&scene, 2).is_some_and(|w| w.contains("pixels: under")));
         let ship = crate::render::tests::ship_at(Vec3::NEG_Z * 20.0, 1e6);
         scene.ships = vec![crate::scene::Ship { host: Some(1), ..ship }];
         assert_eq!(why(&scene, 1), None);

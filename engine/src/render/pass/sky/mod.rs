@@ -26,13 +26,18 @@ use crate::render::report::AirReport;
 use crate::render::shared::{FrameContext, Mirror, Shared};
 use crate::render::targets::HDR;
 use crate::scene::gpu_data::{MAX_AIRS, SkySettings, SkyUniform};
-use crate::scene::{Body, Snapshot};
+use crate::scene::{Body, Snapshot, Surface};
 use bytemuck::Zeroable;
 use choose::{Choice, Rect};
+use std::sync::OnceLock;
 use wgpu::{BindGroupEntry, BindingResource};
 
 /// Points of a march on a long stretch of a ray unless told otherwise.
 pub const STEPS: u32 = 12;
+
+/// Pixels from one ray to the next, each way, of an air before a bank of fog that it holds. Not that of the level from which a painter lays
+/// its own air.
+pub const FRONT_RATE: u32 = 2;
 
 /// How one model of air draws. Bind groups: 0 and 1 as in [`crate::render::shared`], 2 the picture (opaque, depth, `Sky`), 3 its own.
 pub trait Painter: Send {
@@ -89,6 +94,8 @@ pub struct PainterKind {
     pub pipeline: wgpu::RenderPipeline,
     /// For further pipelines of the same file.
     pub module: wgpu::ShaderModule,
+    /// Draws with the entry point `front`: made when first needed.
+    front: OnceLock<wgpu::RenderPipeline>,
 }
 
 /// One body's air, about to be drawn.
@@ -103,6 +110,8 @@ pub struct Draw<'a> {
     pub light: &'a wgpu::BindGroup,
     /// Group 2.
     pub picture: &'a wgpu::BindGroup,
+    /// Light and transmittance of the air in which it lies, up to it, are in the level of [`FRONT_RATE`].
+    pub held: bool,
 }
 
 impl PainterKind {
@@ -114,7 +123,7 @@ impl PainterKind {
         let module = shaders.load(&gpu.device, file)?;
         let groups = [&shared.frame_layout, &shared.light_layout, picture, &own_layout];
         let pipeline = PipelineKind::full_screen("sky", &module, &groups, HDR).make(gpu);
-        Ok(Self { file, own_layout, pipeline, module })
+        Ok(Self { file, own_layout, pipeline, module, front: OnceLock::new() })
     }
 }
 
@@ -178,6 +187,8 @@ pub struct Sky {
     picture: wgpu::BindGroupLayout,
     painters: Vec<Box<dyn Painter>>,
     uniforms: Vec<Uniform<SkyUniform>>,
+    /// The same for the air before a bank of fog.
+    fronts: Vec<Uniform<SkyUniform>>,
     chosen: Vec<Choice>,
     no_mirror: Mirror,
     /// The last picture through air is in `aerial`, else in `opaque`.
@@ -190,8 +201,9 @@ impl Sky {
         let picture = picture_layout(gpu);
         let parts = Parts { gpu, shaders, shared, picture: &picture };
         let painters = PAINTERS.iter().map(|make| make(&parts)).collect::<Result<Vec<_>, _>>()?;
-        let uniforms = (0..MAX_AIRS).map(|_| Uniform::new(&gpu.device, "Sky", wgpu::BufferUsages::STORAGE)).collect();
-        Ok(Self { steps: STEPS, picture, painters, uniforms, chosen: Vec::new(), no_mirror: Mirror::none(gpu), in_aerial: false })
+        let [uniforms, fronts] =
+            [0, 1].map(|_| (0..MAX_AIRS).map(|_| Uniform::new(&gpu.device, "Sky", wgpu::BufferUsages::STORAGE)).collect());
+        Ok(Self { steps: STEPS, picture, painters, uniforms, fronts, chosen: Vec::new(), no_mirror: Mirror::none(gpu), in_aerial: false })
     }
 
     /// Chooses what to draw and why the rest is not; then tells why no model has tables of its own to make.
@@ -274,9 +286,9 @@ impl Sky {
     /// after that part alone was copied to be read.
     pub fn record(&mut self, f: &mut FrameContext<'_>, light: &wgpu::BindGroup) -> wgpu::TextureView {
         let whole = Rect::whole(f.targets.size);
-        for (choice, uniform) in self.chosen.iter().zip(&self.uniforms) {
-            let Some((id, air)) = air_of(f.scene, choice) else { continue };
-            let Some(painter) = self.painters.get_mut(painter_of(&air.model)) else { continue };
+        for (i, choice) in self.chosen.iter().enumerate() {
+            let (Some((id, air)), Some(uniform)) = (air_of(f.scene, choice), self.uniforms.get(i)) else { continue };
+            let Some(painter) = self.painters.get(painter_of(&air.model)) else { continue };
             let Some(body) = f.scene.bodies.get(choice.body as usize) else { continue };
             uniform.write(
                 &f.gpu.queue,
@@ -291,16 +303,10 @@ impl Sky {
                 choice.rect.copy(&mut f.encoder, &current.texture, &other.texture);
                 (other, current)
             };
-            let picture = f.gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: Some("sky"),
-                layout: &self.picture,
-                entries: &[
-                    BindGroupEntry { binding: 0, resource: BindingResource::TextureView(&from.view) },
-                    BindGroupEntry { binding: 1, resource: BindingResource::TextureView(&targets.depth.view) },
-                    BindGroupEntry { binding: 2, resource: uniform.buffer.as_entire_binding() },
-                ],
-            });
-            painter.before(f, &Draw { body, air, rect: choice.rect, light, picture: &picture });
+            let picture = self.picture_group(f, &from.view, uniform);
+            let held = matches!(body.surface, Surface::Nothing) && self.record_front(f, light, &from.view, i);
+            let Some(painter) = self.painters.get_mut(painter_of(&air.model)) else { continue };
+            painter.before(f, &Draw { body, air, rect: choice.rect, light, picture: &picture, held });
             let mut pass = f.draw_full_screen("sky", &into.view, choice.rect != whole);
             pass.set_pipeline(painter.pipeline());
             pass.set_bind_group(1, light, &[]);
@@ -311,6 +317,45 @@ impl Sky {
             pass.draw(0..3, 0..1);
         }
         if self.in_aerial { f.targets.aerial.view.clone() } else { f.targets.opaque.view.clone() }
+    }
+
+    /// Before a bank of fog in another's air: draws that air up to the bank, into the level of [`FRONT_RATE`]. False where it lies in none.
+    fn record_front(&self, f: &mut FrameContext<'_>, light: &wgpu::BindGroup, opaque: &wgpu::TextureView, bank: usize) -> bool {
+        let Some((choice, uniform)) = self.chosen.get(bank).zip(self.fronts.get(bank)) else { return false };
+        let Some(holder) = self.chosen.iter().find(|c| choice.held_by == Some(c.body as usize)) else { return false };
+        let Some((id, air)) = air_of(f.scene, holder) else { return false };
+        let Some(painter) = self.painters.get(painter_of(&air.model)) else { return false };
+        let Some(body) = f.scene.bodies.get(holder.body as usize) else { return false };
+        let settings = painter.settings_in(f.scene, body, air);
+        uniform.write(&f.gpu.queue, &SkyUniform { ids: [holder.body, self.steps, 0, choice.body], settings });
+        let picture = self.picture_group(f, opaque, uniform);
+        let kind = painter.kind();
+        let groups = [&f.shared.frame_layout, &f.shared.light_layout, &self.picture, &kind.own_layout];
+        let pipeline = kind.front.get_or_init(|| {
+            PipelineKind { entry: "front", colours: 2, ..PipelineKind::full_screen("sky", &kind.module, &groups, HDR) }.make(f.gpu)
+        });
+        let rect = choice.rect.every(FRONT_RATE, f.targets.size);
+        let views = f.targets.sky_at(FRONT_RATE).light.each_ref().map(|t| &t.view);
+        let mut pass = f.draw_pair("sky", views, None);
+        pass.set_pipeline(pipeline);
+        pass.set_bind_group(1, light, &[]);
+        pass.set_bind_group(2, &picture, &[]);
+        pass.set_bind_group(3, painter.group(id), &[]);
+        pass.set_scissor_rect(rect.left, rect.top, rect.width, rect.height);
+        pass.draw(0..3, 0..1);
+        true
+    }
+
+    fn picture_group(&self, f: &FrameContext<'_>, opaque: &wgpu::TextureView, uniform: &Uniform<SkyUniform>) -> wgpu::BindGroup {
+        f.gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("sky"),
+            layout: &self.picture,
+            entries: &[
+                BindGroupEntry { binding: 0, resource: BindingResource::TextureView(opaque) },
+                BindGroupEntry { binding: 1, resource: BindingResource::TextureView(&f.targets.depth.view) },
+                BindGroupEntry { binding: 2, resource: uniform.buffer.as_entire_binding() },
+            ],
+        })
     }
 
     /// Whether the finished light of the last frame is in `aerial`; else it is in `opaque`.
