@@ -229,6 +229,8 @@ struct Picture {
 const PITCHES_DEG: [f64; 7] = [60.0, 8.0, 0.5, -3.0, -9.0, -18.0, -80.0];
 const FOV_DEG: f64 = 3.44;
 const SIDE: u32 = 24;
+/// What a pixel may jump by when it goes over from the mean of those around it to a march of its own: the bend that the mean passes over.
+const SWITCH: f64 = 0.02;
 const SUN_CD: Vec3 = Vec3::new(2.9e27, 2.86e27, 2.8e27);
 
 impl Picture {
@@ -284,7 +286,7 @@ impl Picture {
 
 /// How far a pixel of a drawn climb jumps at most beyond what it changes in the shots before and after, as a share of its light (or of a thousandth of
 /// white, where it is darker). Left out are pixels over which the edge of the planet or of its air passes between the shots, and those next to them.
-fn drawn_jump(altitudes: &[Vec<f64>], sun_zenith: f64, ev: f32) -> (f64, String) {
+fn drawn_jump(altitudes: &[Vec<f64>], sun_zenith: f64, ev: f32, everywhere: bool) -> (f64, String) {
     let gpu = tests::gpu();
     let planet = planet("earth");
     let (medium, air) = (&planet.medium, planet.medium.clone().into());
@@ -306,7 +308,9 @@ fn drawn_jump(altitudes: &[Vec<f64>], sun_zenith: f64, ev: f32) -> (f64, String)
         for run in altitudes {
             let mut drawn: Vec<Vec<f32>> = Vec::new();
             for h in run {
-                renderer.render(&gpu, &picture.scene(&air, *h, sun, ev), Target::Image(&image), None).expect("it is drawn");
+                let mut scene = picture.scene(&air, *h, sun, ev);
+                scene.force = Force { all: everywhere };
+                renderer.render(&gpu, &scene, Target::Image(&image), None).expect("it is drawn");
                 drawn.push(renderer.read_hdr(&gpu).expect("it can be read").rgba);
             }
             for i in 2..run.len().saturating_sub(1) {
@@ -362,9 +366,8 @@ fn a_drawn_climb_does_not_jump() {
     let runs: Vec<Vec<f64>> =
         [60, 300, 800, top - 40, top - 4, top + 4, top + 80, top + 200, 1900].map(|at| all[at..at + 7].to_vec()).to_vec();
     for (sun_zenith, ev) in [(40.0, 12.0), (95.0, 3.0)] {
-        let worst = drawn_jump(&runs, sun_zenith, ev);
-        assert!(worst.0 < BAR, "{worst:?}");
-        assert!(worst.0 > 1e-4, "{worst:?}");
+        let worst = drawn_jump(&runs, sun_zenith, ev, false);
+        assert!(worst.0 > 1e-4 && worst.0 < SWITCH, "{worst:?}");
     }
 }
 
@@ -374,7 +377,8 @@ fn a_drawn_climb_of_two_thousand_shots_does_not_jump() {
     let all = climb(2000, planet("earth").medium.top_altitude_m);
     let above: Vec<f64> = all.into_iter().filter(|h| *h >= 1.0).collect();
     for (sun_zenith, ev) in [(40.0, 12.0), (89.5, 8.0), (95.0, 3.0)] {
-        let worst = drawn_jump(std::slice::from_ref(&above), sun_zenith, ev);
-        assert!(worst.0 < BAR, "{worst:?}");
+        let everywhere = drawn_jump(std::slice::from_ref(&above), sun_zenith, ev, true);
+        let worst = drawn_jump(std::slice::from_ref(&above), sun_zenith, ev, false);
+        assert!(everywhere.0 < BAR && worst.0 < SWITCH, "{everywhere:?} {worst:?}");
     }
 }
