@@ -85,6 +85,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 /// Exposed so that the mean is a middling grey, by x / (1 + x).
 fn write_png(path: &std::path::Path, scale: u32, rgba: &[f32]) -> Result<(), Box<dyn Error>> {
     let mean = rgba.chunks_exact(4).map(|p| p[1]).sum::<f32>() / (rgba.len() / 4).max(1) as f32;
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a colour")]
     let byte = |x: f32| {
         let y = x / mean.max(1e-12);
         ((y / (1.0 + y)).max(0.0).powf(1.0 / 2.2) * 255.0) as u8

@@ -12,7 +12,7 @@
 @group(0) @binding(1) var media: texture_2d_array<f32>;
 @group(0) @binding(2) var transmittance: texture_2d_array<f32>;
 @group(0) @binding(3) var linear: sampler;
-@group(0) @binding(4) var<uniform> job: Job;
+@group(0) @binding(4) var<storage, read> job: Job;  // no uniform: branches hang on it, see `compute_pipeline` of engine/src/render/pipeline.rs
 @group(0) @binding(5) var molecules: texture_3d<f32>;
 @group(0) @binding(6) var others: texture_3d<f32>;
 @group(0) @binding(7) var order_before: texture_3d<f32>;

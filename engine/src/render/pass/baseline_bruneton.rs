@@ -11,7 +11,7 @@ use crate::gpu::Gpu;
 use crate::gpu::buffer::Uniform;
 use crate::gpu::texture::{Texture, linear_sampler};
 use crate::render::RenderError;
-use crate::render::pipeline::{compute_pipeline, loaded_entry, sampler_entry, texture_entry, uniform_entry};
+use crate::render::pipeline::{compute_pipeline, loaded_entry, sampler_entry, storage_entry, texture_entry, uniform_entry};
 use crate::render::shared::AirTables;
 use crate::render::targets::HDR;
 use crate::scene::Body;
@@ -100,7 +100,7 @@ pub fn make(parts: &Parts<'_>, tables: &AirTables, sizes: Sizes, sun_rad: f32) -
             loaded_entry(1, array),
             texture_entry(2, array),
             sampler_entry(3, wgpu::SamplerBindingType::Filtering),
-            uniform_entry(4),
+            storage_entry(4),
             texture_entry(5, solid),
             texture_entry(6, solid),
             texture_entry(7, solid),
@@ -157,7 +157,7 @@ impl Bruneton {
     /// One step of an order. `read`: molecules, others, the order before, turned, ground; `write`: two volumes, the ground.
     fn run(&self, gpu: &Gpu, pass: &mut wgpu::ComputePass<'_>, step: Step, order: u32, read: [&Texture; 5], write: [&Texture; 3]) {
         let Sizes { texels, samples, directions, .. } = self.sizes;
-        let job = Uniform::new(&gpu.device, "Job", wgpu::BufferUsages::empty());
+        let job = Uniform::new(&gpu.device, "Job", wgpu::BufferUsages::STORAGE);
         job.write(&gpu.queue, &Job { sizes: texels, counts: [order, samples, directions, 0], sun: [self.sun_rad, 0.0, 0.0, 0.0] });
         let air = wgpu::BufferBinding { buffer: &self.tables.airs, offset: 0, size: wgpu::BufferSize::new(size_of::<AirUniform>() as u64) };
         let mut resources = vec![

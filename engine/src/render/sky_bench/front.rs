@@ -31,7 +31,7 @@ pub struct Entrant {
     pub technique: Technique,
     /// How it draws.
     pub setting: Setting,
-    /// Its light is in no unit: the factor that fits the planet best is taken.
+    /// Its light is in no unit: it is multiplied by one factor for the planet, the median's.
     pub fitted: bool,
 }
 
@@ -245,7 +245,7 @@ fn judged(picture: &[f32], scale: u32, planet: &Planet, view: &View, truths: &[T
 
 fn row(planet: &Planet, entrant: &Entrant, size_px: [u32; 2], rebuild_ms: f64, ms: &[f64], yard: &[f64], light: &[Vec<f64>]) -> Row {
     let all: Vec<f64> = light.iter().flatten().copied().collect();
-    let factor = if entrant.fitted { all.iter().sum::<f64>() / all.iter().map(|x| x * x).sum::<f64>().max(1e-300) } else { 1.0 };
+    let factor = if entrant.fitted { fit(&all) } else { 1.0 };
     let summary = |wanted: &dyn Fn(&View) -> bool| {
         let which: Vec<usize> = (0..VIEWS.len()).filter(|v| wanted(&VIEWS[*v])).collect();
         let total = |of: &[f64]| which.iter().map(|v| of[*v]).sum::<f64>();
@@ -269,6 +269,14 @@ fn row(planet: &Planet, entrant: &Entrant, size_px: [u32; 2], rebuild_ms: f64, m
         views: views.collect(),
         on_front: false,
     }
+}
+
+/// The factor by which as many rays are too bright as too dark; what is not lit at all has no say. The least squares of relative errors would
+/// take the picture next to black, because darkness errs by 1 at most.
+fn fit(drawn_over_true: &[f64]) -> f64 {
+    let mut lit: Vec<f64> = drawn_over_true.iter().copied().filter(|x| *x > 0.0).collect();
+    lit.sort_by(f64::total_cmp);
+    lit.get(lit.len() / 2).map_or(1.0, |x| 1.0 / x)
 }
 
 /// Root mean square and worst.
