@@ -8,8 +8,8 @@
 
 const ORDERS_SUNS: u32 = 32u;
 const ORDERS_ALTITUDES: u32 = 16u;
-const ORDERS_VIEWS: u32 = 16u;
-const ORDERS_SIZE: vec3<f32> = vec3<f32>(3.0 * 32.0, f32(MAX_AIRS) * 16.0, 16.0);
+const ORDERS_VIEWS: u32 = 20u;
+const ORDERS_SIZE: vec3<f32> = vec3<f32>(3.0 * 32.0, f32(MAX_AIRS) * 16.0, 20.0);
 
 // Sine and cosine of the angle by which the horizon lies below the level.
 fn horizon_dip(radius: f32, altitude: f32) -> vec2<f32> {
@@ -42,6 +42,11 @@ fn orders_sun_mu(air: Air, dip: vec2<f32>, x: f32) -> f32 {
 // Coordinate of the altitude, 0 to 1.
 fn orders_altitude_y(air: Air, altitude: f32) -> f32 {
     return sqrt(clamp(altitude / air.shape.y, 0.0, 1.0));
+}
+
+// Coordinate of the view's zenith cosine, 0 to 1: nearly even in the angle.
+fn orders_view_z(mu: f32) -> f32 {
+    return 0.5 + 0.5 * sign(mu) * (1.0 - sqrt(max(1.0 - abs(mu), 0.0)));
 }
 
 // Cosines of 1, 2, 3 and 4 times the azimuth of a view of zenith cosine `mu` from the sun of zenith cosine `mu_s`, `turn` the cosine between the two.
@@ -83,7 +88,7 @@ fn air_orders(
     let red = vec3<f32>(
         x * f32(ORDERS_SUNS - 1u) + 0.5,
         f32(slot) * f32(ORDERS_ALTITUDES) + y * f32(ORDERS_ALTITUDES - 1u) + 0.5,
-        (0.5 + 0.5 * clamp(mu, -1.0, 1.0)) * f32(ORDERS_VIEWS - 1u) + 0.5,
+        orders_view_z(mu) * f32(ORDERS_VIEWS - 1u) + 0.5,
     ) / ORDERS_SIZE;
     let azimuth = orders_azimuth(mu, mu_s, turn);
     return vec3<f32>(

@@ -31,11 +31,10 @@ struct Air {
     orders: vec4<f32>,          // how the sun's height is mapped in the table of further orders: SunMap of engine/src/air/model/orders.rs
     bands: array<vec4<f32>, 6>, // columns of the matrices to linear sRGB of the two media that draw it; w of a first: that medium's slot; w of [1]: how many of the two
     rings: array<vec4<f32>, 16>, // from how far scattered light comes: engine/src/air/model/spread.rs. Weights at the datum (w: radius), their rise with altitude, both more under a high sun
-    forward: vec4<f32>,         // of what each class scatters, the share that goes straight on: engine/src/air/model/orders.rs
-    aureole_g: vec4<f32>,       // how a class scatters what went straight on: a Henyey–Greenstein lobe of this asymmetry
-    aureole_scale: vec4<f32>,   // times this
-    aureole: array<vec4<f32>, 9>, // and a series of Legendre polynomials
-    spare: array<vec4<f32>, 8>, // to a multiple of 256 bytes, where any graphics card can bind one air of the list
+    forward: vec4<f32>,         // of what each class scatters, the share that goes straight on: engine/src/air/model/forward.rs
+    cap: vec4<f32>,             // value at which its peak is then cut off, sr⁻¹
+    aureole: Phases,            // where it scatters light that such peaks have turned before
+    pad: array<vec4<f32>, 14>,  // to a multiple of 256 bytes: any graphics card binds one air of the list
 }
 
 struct Airs {
@@ -128,17 +127,10 @@ fn air_phase(air: Air, media: texture_2d_array<f32>, slot: i32, c: f32) -> vec4<
     return phase_values(air.phases, c);
 }
 
-// Where each class scatters light that forward peaks have turned once already, sr⁻¹: engine/src/air/model/orders.rs.
-fn air_aureole(air: Air, c: f32) -> vec4<f32> {
-    var sum = phase_values(Phases(air.aureole_g, air.aureole_scale, vec4<f32>(0.0), vec4<f32>(0.0)), c);
-    var before = 0.0;
-    var here = 1.0;
-    for (var l = 0u; l < 9u; l++) {
-        sum += air.aureole[l] * here;
-        let degree = f32(l);
-        let above = ((2.0 * degree + 1.0) * c * here - degree * before) / (degree + 1.0);
-        before = here;
-        here = above;
+// Where each class scatters light that forward peaks have turned before; that of a table is not blurred.
+fn air_aureole(air: Air, c: f32, phase: vec4<f32>) -> vec4<f32> {
+    if MEDIA_TABLES && air.shape.z > 0.0 {
+        return phase;
     }
-    return max(sum, vec4<f32>(0.0));
+    return phase_values(air.aureole, c);
 }

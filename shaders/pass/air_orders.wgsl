@@ -20,6 +20,7 @@ const COSINE: array<f32, 6> = array<f32, 6>(0.9659258, 0.7071068, 0.2588190, -0.
 @group(0) @binding(6) var<storage, read_write> sources: array<vec4<f32>>;     // order, altitude, view, sun: coded modes of red, of green, of blue
 @group(0) @binding(7) var<storage, read_write> irradiance: array<vec4<f32>>;  // order, altitude, sun: its fourth root; after all orders what the aureole adds
 @group(0) @binding(8) var<storage, read_write> drawn: array<vec4<f32>>;       // like sources, by the phase functions' full shape
+@group(0) @binding(9) var media: texture_2d_array<f32>;                       // of this air alone
 
 // The sources of the order before at a step's altitude and zenith cosine, for every sun.
 var<workgroup> red: array<vec4<f32>, ORDERS_SUNS>;
@@ -62,16 +63,7 @@ fn first(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_index) 
     var sum = Modes(vec4<f32>(0.0), vec4<f32>(0.0), vec4<f32>(0.0));
     for (var a = 0u; a < AZIMUTHS; a++) {
         let turn = across * COSINE[a] + mu * head.x;
-        var legendre: array<f32, PLAN_DEGREES>;
-        var before = 0.0;
-        var here = 1.0;
-        for (var l = 0u; l < PLAN_DEGREES; l++) {
-            let degree = f32(l);
-            legendre[l] = here * (2.0 * degree + 1.0) / 12.5663706144;
-            let above = ((2.0 * degree + 1.0) * turn * here - degree * before) / (degree + 1.0);
-            before = here;
-            here = above;
-        }
+        let phase = min(air_phase(air, media, 0, turn), air.cap);
         var light = vec3<f32>(0.0);
         for (var i = 0u; i < PLAN_STEPS; i++) {
             let step = path + PLAN_HEAD + i * PLAN_STEP;
@@ -79,10 +71,7 @@ fn first(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_index) 
             let mu_s = clamp(place.x * mu + place.y * turn, -1.0, 1.0);
             let visible = visible_above_limb(SUN_RAD, sun_elevation(air.shape.x, place.w, mu_s));
             if visible > 0.0 {
-                var turned = vec3<f32>(0.0);
-                for (var l = 0u; l < PLAN_DEGREES; l++) {
-                    turned += plan[step + 3u + l].rgb * legendre[l];
-                }
+                let turned = plan[step + 3u].rgb * phase.x + plan[step + 4u].rgb * phase.y + plan[step + 5u].rgb * phase.z + plan[step + 6u].rgb * phase.w;
                 light += turned * visible * air_sun_beam(air, transmittance, linear, 1, place.w, mu_s).rgb;
             }
         }
@@ -99,7 +88,7 @@ fn first(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_index) 
 // The coded sources of the order before, between rows of altitude and of view.
 fn source_between(place: vec4<f32>, row: vec4<f32>, k: u32, channel: u32) -> vec4<f32> {
     let low = min(u32(row.x), ORDERS_ALTITUDES - 2u);
-    let z = clamp(0.5 + 0.5 * place.z, 0.0, 1.0) * f32(ORDERS_VIEWS - 1u);
+    let z = orders_view_z(place.z) * f32(ORDERS_VIEWS - 1u);
     let near = min(u32(z), ORDERS_VIEWS - 2u);
     let at = (((((order.x - 1u) * ORDERS_ALTITUDES + low) * ORDERS_VIEWS + near) * ORDERS_SUNS) + k) * 3u + channel;
     let view = ORDERS_SUNS * 3u;

@@ -1,7 +1,8 @@
 //! `#[repr(C)]` mirrors of the structs of air in `shaders/`; the rules are those of [`super::gpu_data`].
 
 use super::gpu_data::vec4;
-use crate::air::model::orders::{Aureole, DEGREE, SunMap, forward_share};
+use crate::air::model::forward::Truncated;
+use crate::air::model::orders::SunMap;
 use crate::air::model::spread::{RINGS, SUNS, Spread};
 use crate::air::model::view_space::Spacing;
 use crate::air::model::view_table::{AlphaColour, Split, ViewTable};
@@ -53,10 +54,9 @@ pub struct AirUniform {
     pub bands: [[f32; 4]; 6],
     pub rings: [[f32; 4]; 4 * RINGS],
     pub forward: [f32; 4],
-    pub aureole_g: [f32; 4],
-    pub aureole_scale: [f32; 4],
-    pub aureole: [[f32; 4]; DEGREE + 1],
-    pub spare: [[f32; 4]; 8],
+    pub cap: [f32; 4],
+    pub aureole: PhasesUniform,
+    pub pad: [[f32; 4]; 14],
 }
 
 // A graphics card binds one air of the list only where its place is a multiple of this.
@@ -89,11 +89,11 @@ impl AirUniform {
         let map = SunMap::new(medium);
         air.orders = [map.scale, map.low, map.inverse, map.knee].map(narrow);
         for (i, class) in classes.list.iter().take(Classes::MAX).enumerate() {
-            let chi = class.legendre(DEGREE + 2);
-            let aureole = Aureole::new(&chi);
-            air.forward[i] = narrow(forward_share(&chi));
-            (air.aureole_g[i], air.aureole_scale[i]) = (narrow(aureole.g), narrow(aureole.scale));
-            air.aureole.iter_mut().zip(aureole.series).for_each(|(row, x)| row[i] = narrow(x));
+            let cut = Truncated::new(class);
+            (air.forward[i], air.cap[i]) = (narrow(cut.share), narrow(cut.cap));
+            if let Some(layer) = medium.layers.get(i).filter(|_| classes.direct) {
+                air.aureole.set(i, &cut.aureole(&layer.phase));
+            }
         }
         air.bands = [vec4(Vec3::X, 0.0), vec4(Vec3::Y, 1.0), vec4(Vec3::Z, 0.0), [0.0; 4], [0.0; 4], [0.0; 4]];
         if classes.direct {
@@ -153,7 +153,13 @@ impl AirUniform {
             }
             Profile::Table { .. } => {}
         }
-        let (g, polynomial) = match layer.phase {
+        self.phases.set(i, &layer.phase);
+    }
+}
+
+impl PhasesUniform {
+    fn set(&mut self, i: usize, phase: &Phase) {
+        let (g, polynomial) = match *phase {
             Phase::Rayleigh => (0.0, [0.75, 0.0, 0.75]),
             Phase::HenyeyGreenstein { g } => (g, [1.0, 0.0, 0.0]),
             Phase::CornetteShanks { g } => (g, [1.5 / (2.0 + g * g), 0.0, 1.5 / (2.0 + g * g)]),
@@ -161,8 +167,8 @@ impl AirUniform {
             Phase::Isotropic => (0.0, [1.0, 0.0, 0.0]),
             Phase::Table { .. } => (0.0, [0.0; 3]),
         };
-        self.phases.g[i] = g;
-        [self.phases.x[i], self.phases.y[i], self.phases.z[i]] = polynomial;
+        self.g[i] = g;
+        [self.x[i], self.y[i], self.z[i]] = polynomial;
     }
 }
 

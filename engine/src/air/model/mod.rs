@@ -2,6 +2,7 @@
 //!
 //! [`physical`] is the default. What a model draws is judged by [`super::reference`]; its shader is `shaders/pass/sky_<model>.wgsl`.
 
+pub mod forward;
 pub mod gradient;
 pub mod limb_table;
 pub mod maps;

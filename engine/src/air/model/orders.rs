@@ -8,13 +8,16 @@
 //! One order follows from the one before in two steps, which `shaders/pass/air_orders.wgsl` takes for all texels at once:
 //! - *gather*: along fixed directions from each altitude (Gauss–Legendre nodes in the zenith angle, dense at the horizon; even azimuths) the
 //!   source of the order before is added up step by step, ground included: the radiance `L`, by its Fourier modes in the azimuth;
-//! - *turn*: `S_m(v) = Σ K_m(v, ω) L_m(ω)`, the phase function's own modes `K_m = Σ_l χ_l Y_lm(v) Y_lm(ω)` by the addition theorem
-//!   [Chandrasekhar 1960, "Radiative Transfer", §48].
+//! - *turn*: `S_m(v) = Σ K_m(v, ω) L_m(ω)`, K the phase function's own modes in the azimuth between v and ω.
+//!
+//! Forward peaks are cut off first ([`super::forward`]): to the orders the light that they turn is sunlight still, or goes on along its
+//! direction. For what is drawn a second set of kernels puts it back, blurred as far as the directions lie apart.
 //!
 //! Where the steps lie, how much light each lets through and the kernels K depend on the medium alone: [`Plan`] computes them here,
 //! in f64, for any layers, profiles and phase functions, once for a medium.
 
-use crate::air::{Classes, Medium};
+use super::forward::Truncated;
+use crate::air::{Class, Classes, Medium};
 use crate::space::relative::narrow;
 use core::f64::consts::PI;
 use glam::DVec3;
@@ -23,8 +26,8 @@ use glam::DVec3;
 pub const SUNS: usize = 32;
 /// Altitudes in a table.
 pub const ALTITUDES: usize = 16;
-/// Zenith cosines of the view in a table.
-pub const VIEWS: usize = 16;
+/// Zenith cosines of the view in a table, nearly even in the angle.
+pub const VIEWS: usize = 20;
 /// Directions from an altitude that leave the air, and that meet the ground.
 pub const UP: usize = 12;
 /// See [`UP`].
@@ -33,16 +36,16 @@ pub const DOWN: usize = 8;
 pub const DIRECTIONS: usize = UP + DOWN;
 /// Steps along a direction.
 pub const STEPS: usize = 16;
-/// Degree at which the Legendre series of a phase function ends.
-pub const DEGREE: usize = 8;
-/// Degree at which it ends in what is drawn.
-pub const DRAWN_DEGREE: usize = 16;
+/// Degree to which the sum over the directions from an altitude is exact.
+const EXACT: usize = 8;
+/// Sharpness of the lobe in which a peak's light comes, as wide as directions lie apart: exp((cos θ − 1) · this).
+const LOBE: f64 = 40.0;
 /// Fourier modes in the azimuth.
 pub const MODES: usize = 4;
 /// Rows of four numbers that open a direction.
 pub const HEAD_ROWS: usize = 2;
 /// Rows of a step.
-pub const STEP_ROWS: usize = 4 + DEGREE;
+pub const STEP_ROWS: usize = 3 + Classes::MAX;
 /// Rows of a direction with its steps.
 pub const PATH_ROWS: usize = HEAD_ROWS + STEPS * STEP_ROWS;
 /// Rows of all directions; the kernels follow.
@@ -96,74 +99,13 @@ fn altitude_m(medium: &Medium, row: usize) -> f64 {
     medium.top_altitude_m * (x * x).min(1.0 - 1e-6)
 }
 
-/// Of what a phase function of these Legendre coefficients (to degree [`DEGREE`] + 1) scatters, the share that is taken to go straight on:
-/// the series of the rest ends smoothly at [`DEGREE`] [Wiscombe 1977, "The Delta-M Method"].
-pub fn forward_share(chi: &[f64]) -> f64 {
-    chi.get(DEGREE + 1).map_or(0.0, |x| x.clamp(0.0, 1.0))
-}
-
-/// How a class scatters light that its like has turned before, but by so little that it still counts as sunlight: with the coefficients χ_l
-/// to [`DEGREE`], as the further orders reckon with, and beyond with χ_l²/f, as two scatterings make them: there χ_l ∝ gˡ is taken, and
-/// Henyey and Greenstein's lobe of g² has just these [as the second-order term of Nakajima & Tanaka 1988, JQSRT 40].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Aureole {
-    /// g².
-    pub g: f64,
-    /// Factor of the lobe.
-    pub scale: f64,
-    /// Factors of the Legendre polynomials that are added.
-    pub series: [f64; DEGREE + 1],
-}
-
-impl Aureole {
-    /// From Legendre coefficients to degree [`DEGREE`] + 2.
-    pub fn new(chi: &[f64]) -> Self {
-        let forward = forward_share(chi);
-        let ratio = chi.get(DEGREE + 2).map_or(0.0, |x| x / forward.max(1e-9)).clamp(0.5, 0.985);
-        let g = ratio * ratio;
-        let scale = if forward < 1e-3 { 0.0 } else { forward / (0..=DEGREE).fold(1.0, |x, _| x * g) };
-        let mut series = [0.0; DEGREE + 1];
-        let mut lobe = scale;
-        for (l, (slot, chi)) in series.iter_mut().zip(chi).enumerate() {
-            *slot = (2 * l + 1) as f64 / (4.0 * PI) * (chi - lobe);
-            lobe *= g;
-        }
-        Self { g, scale, series }
-    }
-}
-
-/// A layer's coefficients: χ₀ … χ_[`DEGREE`] without the share that goes straight on, that share, and χ₀ … χ_[`DRAWN_DEGREE`] as they are.
-struct Series {
-    chi: [f64; DEGREE + 1],
-    forward: f64,
-    full: [f64; DRAWN_DEGREE + 1],
-}
-
-/// Those of all layers; a layer that scatters nothing has none.
-fn series(medium: &Medium) -> Vec<Series> {
-    let mut out: Vec<Series> =
-        medium.layers.iter().map(|_| Series { chi: [0.0; DEGREE + 1], forward: 0.0, full: [0.0; DRAWN_DEGREE + 1] }).collect();
-    for class in Classes::of(medium).list {
-        let all = class.legendre(DRAWN_DEGREE);
-        let forward = forward_share(&all);
-        for i in class.layers {
-            if let Some(series) = out.get_mut(i) {
-                series.forward = forward;
-                series.chi.iter_mut().zip(&all).for_each(|(x, chi)| *x = chi - forward);
-                series.full.iter_mut().zip(&all).for_each(|(x, chi)| *x = *chi);
-            }
-        }
-    }
-    out
-}
-
 /// What the precomputation of a medium's further orders needs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
     /// Rows of four numbers, [`ROWS`] of them. A direction, by altitude and from the horizon's side: (zenith cosine; radius and distance of where it ends, by
     /// the datum's radius; weight in the irradiance), (transmittance to the ground × albedo/π, rgb; 0), then its steps:
     /// (radius at the eye, distance, both by the radius at the step; zenith cosine; altitude, m), (table's row; sine and cosine of the horizon's
-    /// dip; 0), (share of the light of a unit source that arrives, rgb; 0), (the same by the Legendre coefficient of the scattering layers, degree 0 to [`DEGREE`]).
+    /// dip; 0), (share of the light of a unit source that arrives, rgb; 0), (the same of each class of layers).
     /// A kernel, by altitude, view and direction: the modes of red, of green, of blue.
     pub rows: Vec<[f32; 4]>,
     /// Orders to compute one by one before they are combined.
@@ -177,19 +119,25 @@ pub(super) struct Direction {
     pub(super) weight: f64,
 }
 
+/// The classes of a medium, whole and without their peaks.
+fn classes(medium: &Medium) -> Vec<(Class, Truncated)> {
+    let with = |class: Class| (Truncated::new(&class), class);
+    Classes::of(medium).list.into_iter().map(with).map(|(truncated, class)| (class, truncated)).collect()
+}
+
 impl Plan {
     /// For a medium.
     pub fn new(medium: &Medium) -> Self {
-        let series = series(medium);
+        let classes = classes(medium);
         let mut rows = Vec::with_capacity(ROWS);
         let [mut kernels, mut drawn] = [(); 2].map(|()| Vec::with_capacity(DRAWN_AT - KERNELS_AT));
         for row in 0..ALTITUDES {
             let altitude_m = altitude_m(medium, row);
             let directions = directions(medium, altitude_m);
             for (i, direction) in directions.iter().enumerate() {
-                path_rows(medium, &series, altitude_m, direction, i >= UP, &mut rows);
+                path_rows(medium, &classes, altitude_m, direction, i >= UP, &mut rows);
             }
-            kernel_rows(medium, &series, row, &directions, [&mut kernels, &mut drawn]);
+            kernel_rows(medium, &classes, row, &directions, [&mut kernels, &mut drawn]);
         }
         rows.append(&mut kernels);
         rows.append(&mut drawn);
@@ -248,11 +196,11 @@ pub(super) fn directions(medium: &Medium, altitude_m: f64) -> Vec<Direction> {
     out
 }
 
-/// Changes weights by as little as makes them exact for polynomials of the cosine to [`DEGREE`], and for the light on level ground.
+/// Changes weights by as little as makes them exact for polynomials of the cosine to degree [`EXACT`], and for the light on level ground.
 fn corrected(directions: &mut [Direction]) {
-    const N: usize = DEGREE + 2;
+    const N: usize = EXACT + 2;
     let functions = |cosine: f64| -> [f64; N] {
-        let y = legendre(cosine)[0];
+        let y = legendre(cosine);
         core::array::from_fn(|j| if j < N - 1 { y[j] } else { cosine.max(0.0) })
     };
     // Normal equations of the least change, relative to the weight, under these conditions.
@@ -298,7 +246,7 @@ fn row3(v: DVec3, w: f64) -> [f32; 4] {
     [v.x, v.y, v.z, w].map(|x| if x.is_finite() { narrow(x) } else { 0.0 })
 }
 
-fn path_rows(medium: &Medium, series: &[Series], from_m: f64, direction: &Direction, hits: bool, rows: &mut Vec<[f32; 4]>) {
+fn path_rows(medium: &Medium, classes: &[(Class, Truncated)], from_m: f64, direction: &Direction, hits: bool, rows: &mut Vec<[f32; 4]>) {
     let (bottom, top) = (medium.bottom_radius_m, medium.top_altitude_m);
     let (r, q0) = (bottom + from_m, from_m * (2.0 * bottom + from_m));
     let slope = r * direction.cosine;
@@ -321,18 +269,17 @@ fn path_rows(medium: &Medium, series: &[Series], from_m: f64, direction: &Direct
     for i in 0..STEPS {
         let (from, to) = (step_at(low, end, i as f64 / STEPS as f64), step_at(low, end, (i + 1) as f64 / STEPS as f64));
         let (length, s) = (to - from, 0.5 * (from + to));
-        let mut extinction = DVec3::ZERO;
-        let mut scattered = [DVec3::ZERO; DEGREE + 1];
-        let mut total = DVec3::ZERO;
-        for (layer, series) in medium.layers.iter().zip(series) {
-            // Two Gauss points.
-            let density = 0.5
-                * [0.211_324_865_405, 0.788_675_134_595].map(|x| layer.profile.density(altitude(from + x * length))).iter().sum::<f64>();
-            let scattering = layer.scattering_per_m.as_dvec3() * density;
-            extinction += scattering * (1.0 - series.forward) + layer.absorption_per_m.as_dvec3() * density;
-            total += scattering;
-            scattered.iter_mut().zip(&series.chi).for_each(|(sum, x)| *sum += scattering * *x);
+        // Two Gauss points.
+        let points = [0.211_324_865_405, 0.788_675_134_595].map(|x| altitude(from + x * length));
+        let mean = |f: &dyn Fn(f64) -> DVec3| 0.5 * (f(points[0]) + f(points[1]));
+        let mut extinction = mean(&|h| medium.extinction(h));
+        let mut scattered = [DVec3::ZERO; Classes::MAX];
+        for ((class, truncated), slot) in classes.iter().zip(&mut scattered) {
+            *slot = mean(&|h| class.scattering(medium, h));
+            extinction -= *slot * truncated.share;
         }
+        extinction = extinction.max(DVec3::ZERO);
+        let total: DVec3 = scattered.iter().sum();
         let depth = extinction * length;
         let kept = depth.to_array().map(|x| libm::exp(-x));
         // ∫ e^(−σs) ds over the step, in front of it the way to the eye.
@@ -357,77 +304,83 @@ fn path_rows(medium: &Medium, series: &[Series], from_m: f64, direction: &Direct
     }
 }
 
-/// Normalised associated Legendre functions at a cosine, by order m and degree l: Σ_m over their products is (2l+1)/4π P_l.
-fn legendre(cosine: f64) -> [[f64; DRAWN_DEGREE + 1]; MODES] {
-    let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
-    let mut out = [[0.0; DRAWN_DEGREE + 1]; MODES];
-    let mut diagonal = 1.0 / (4.0 * PI).sqrt();
-    for (m, of_mode) in out.iter_mut().enumerate() {
-        let order = m as f64;
-        if m > 0 {
-            diagonal *= sine * ((2.0 * order + 1.0) / (2.0 * order)).sqrt();
-        }
-        let (mut last, mut p) = (0.0, diagonal);
-        for (l, slot) in of_mode.iter_mut().enumerate().skip(m) {
-            *slot = p;
-            let next = l as f64 + 1.0;
-            let a = ((4.0 * next * next - 1.0) / (next * next - order * order)).sqrt();
-            let b = (((next - 1.0) * (next - 1.0) - order * order) / (4.0 * (next - 1.0) * (next - 1.0) - 1.0)).max(0.0).sqrt();
-            (last, p) = (p, a * (cosine * p - b * last));
-        }
-    }
-    out
+/// Zenith cosine of a table's view.
+fn view_cosine(view: usize) -> f64 {
+    let x = 2.0 * view as f64 / (VIEWS - 1) as f64 - 1.0;
+    x.signum() * (1.0 - (1.0 - x.abs()) * (1.0 - x.abs()))
 }
 
-/// The layers' coefficients, mixed by what each scatters around a row of altitude: as much as interpolation between rows gives this one.
-/// For the next order, and for what is drawn.
-fn mixed(medium: &Medium, series: &[Series], row: usize) -> ([DVec3; DEGREE + 1], [DVec3; DRAWN_DEGREE + 1]) {
+/// Normalised Legendre functions of order 0 at a cosine, degree 0 to [`EXACT`].
+fn legendre(cosine: f64) -> [f64; EXACT + 1] {
+    let (mut last, mut p, mut l) = (0.0, 1.0, 0.0);
+    [(); EXACT + 1].map(|()| {
+        let found = p * ((2.0 * l + 1.0) / (4.0 * PI)).sqrt();
+        (last, p) = (p, ((2.0 * l + 1.0) * cosine * p - l * last) / (l + 1.0));
+        l += 1.0;
+        found
+    })
+}
+
+/// What each class scatters around a row of altitude, as much as interpolation between rows gives this one, as a share of all.
+fn shares(medium: &Medium, classes: &[(Class, Truncated)], row: usize) -> [DVec3; Classes::MAX] {
     const PARTS: i32 = 8;
-    let (mut mix, mut full) = ([DVec3::ZERO; DEGREE + 1], [DVec3::ZERO; DRAWN_DEGREE + 1]);
-    let mut total = DVec3::splat(1e-300);
+    let mut shares = [DVec3::ZERO; Classes::MAX];
     for k in -PARTS..=PARTS {
         let x = (row as f64 + f64::from(k) / f64::from(PARTS)) / (ALTITUDES - 1) as f64;
-        if !(0.0..=1.0).contains(&x) {
-            continue;
-        }
-        // The hat function, by the width in altitude; the row itself always has its say.
-        let weight = f64::from(PARTS - k.abs()) * x + if k == 0 { 1e-9 } else { 0.0 };
-        for (layer, series) in medium.layers.iter().zip(series) {
-            let scattering = layer.scattering_per_m.as_dvec3() * (layer.profile.density(x * x * medium.top_altitude_m) * weight);
-            total += scattering;
-            mix.iter_mut().zip(&series.chi).for_each(|(sum, x)| *sum += scattering * *x);
-            full.iter_mut().zip(&series.full).for_each(|(sum, x)| *sum += scattering * *x);
+        if (0.0..=1.0).contains(&x) {
+            // The hat function, by the width in altitude; the row itself always has its say.
+            let weight = f64::from(PARTS - k.abs()) * x + if k == 0 { 1e-9 } else { 0.0 };
+            let at = |class: &Class| class.scattering(medium, x * x * medium.top_altitude_m) * weight;
+            shares.iter_mut().zip(classes).for_each(|(sum, (class, _))| *sum += at(class));
         }
     }
-    (mix.map(|sum| sum / total), full.map(|sum| sum / total))
+    let total = shares.iter().sum::<DVec3>().max(DVec3::splat(1e-300));
+    shares.map(|x| x / total)
 }
 
-/// Kernels of an altitude, for the next order and for what is drawn.
-fn kernel_rows(medium: &Medium, series: &[Series], row: usize, directions: &[Direction], rows: [&mut Vec<[f32; 4]>; 2]) {
-    let (mix, full) = mixed(medium, series, row);
-    let arriving: Vec<_> = directions.iter().map(|d| legendre(d.cosine)).collect();
+/// Kernels of an altitude, for the next order and for what is drawn: how much of the light of a direction, by its modes in the azimuth, is
+/// scattered towards a view. What of it a peak turns by little comes from about the view itself, as far as the directions tell them apart.
+fn kernel_rows(medium: &Medium, classes: &[(Class, Truncated)], row: usize, directions: &[Direction], rows: [&mut Vec<[f32; 4]>; 2]) {
+    const AZIMUTHS: usize = 24;
+    let shares = shares(medium, classes, row);
+    let used = || classes.iter().zip(shares).filter(|(_, share)| share.max_element() > 1e-6);
     let [next, drawn] = rows;
+    let modes: Vec<(f64, [f64; MODES])> = (0..AZIMUTHS)
+        .map(|i| {
+            let turn = PI * (i as f64 + 0.5) / AZIMUTHS as f64;
+            (libm::cos(turn), core::array::from_fn(|m| libm::cos(m as f64 * turn) / AZIMUTHS as f64 * if m > 0 { 2.0 } else { 1.0 }))
+        })
+        .collect();
     for view in 0..VIEWS {
-        let leaving = legendre(2.0 * view as f64 / (VIEWS - 1) as f64 - 1.0);
-        let kernel = |mix: &[DVec3], direction: &Direction, arriving: &[[f64; DRAWN_DEGREE + 1]; MODES]| {
-            let mut modes = [DVec3::ZERO; MODES];
-            for (m, sum) in modes.iter_mut().enumerate() {
-                // cos mφ stands for both of ±m.
-                let weight = direction.weight * if m > 0 { 2.0 } else { 1.0 };
-                for (l, mix) in mix.iter().enumerate() {
-                    *sum += *mix * (leaving[m][l] * arriving[m][l] * weight);
+        let cosine = view_cosine(view);
+        let [mut kernels, mut peaks] = [(); 2].map(|()| vec![[DVec3::ZERO; MODES]; directions.len()]);
+        for ((class, truncated), share) in used() {
+            let mut found = vec![[[0.0; MODES]; 2]; directions.len()];
+            for (direction, found) in directions.iter().zip(&mut found) {
+                let across = ((1.0 - cosine * cosine) * (1.0 - direction.cosine * direction.cosine)).max(0.0).sqrt();
+                for (turn, modes) in &modes {
+                    let mu = (cosine * direction.cosine + across * turn).clamp(-1.0, 1.0);
+                    let values =
+                        [class.value(mu).min(truncated.cap), if truncated.share > 0.0 { libm::exp((mu - 1.0) * LOBE) } else { 0.0 }];
+                    for (sum, value) in found.iter_mut().zip(values) {
+                        sum.iter_mut().zip(modes).for_each(|(sum, m)| *sum += direction.weight * value * m);
+                    }
                 }
             }
-            modes
-        };
-        let both = || directions.iter().zip(&arriving);
-        // To this degree the directions are no exact quadrature: all the light is kept by a factor.
-        let kept: DVec3 = both().map(|(d, a)| kernel(&full, d, a)[0]).sum();
-        let scale = full[0] / kept.max(0.5 * full[0]).max(DVec3::splat(1e-300));
-        for (direction, arriving) in both() {
-            let channels = |modes: [DVec3; MODES]| [0, 1, 2].map(|c| modes.map(|x| if x[c].is_finite() { narrow(x[c]) } else { 0.0 }));
-            next.extend(channels(kernel(&mix, direction, arriving)));
-            drawn.extend(channels(kernel(&full, direction, arriving).map(|x| x * scale)));
+            // The sums over directions are not exact: all the light is kept by factors.
+            let scale = |k: usize, kept: f64| kept / found.iter().map(|f| f[k][0]).sum::<f64>().max(1e-9);
+            let (left, peak) = (scale(0, truncated.left), scale(1, truncated.share));
+            for ((kernel, of_peak), [a, b]) in kernels.iter_mut().zip(&mut peaks).zip(&found) {
+                for m in 0..MODES {
+                    kernel[m] += share * (left * a[m]);
+                    of_peak[m] += share * (peak * b[m]);
+                }
+            }
+        }
+        let channels = |modes: [DVec3; MODES]| [0, 1, 2].map(|c| modes.map(|x| if x[c].is_finite() { narrow(x[c]) } else { 0.0 }));
+        for (kernel, peak) in kernels.into_iter().zip(peaks) {
+            next.extend(channels(kernel));
+            drawn.extend(channels(core::array::from_fn(|m| kernel[m] + peak[m])));
         }
     }
 }
@@ -449,29 +402,47 @@ mod tests {
         }
     }
 
+    /// Sums over the directions of the kernels that begin at a row, in the mean over azimuths.
+    fn kept(plan: &Plan, from: usize, altitude: usize, view: usize, c: usize) -> f32 {
+        let at = from + (altitude * VIEWS + view) * DIRECTIONS * 3;
+        (0..DIRECTIONS).map(|d| plan.rows[at + d * 3 + c][0]).sum()
+    }
+
     #[test]
-    fn turning_keeps_all_the_light_and_the_phase_function_s_shape() {
-        // A uniform field of 1 comes out as 1; a beam comes out as the phase function, as far as the series goes.
+    fn turning_keeps_all_the_light_but_what_goes_straight_on() {
+        // A uniform field of 1 comes out as 1 where it is drawn, and for the next order without what peaks leave as it is.
         let plan = Plan::new(&earth());
         assert_eq!(plan.rows.len(), ROWS);
+        let aerosol = Truncated::new(&Classes::of(&earth()).list[1]).share;
         for altitude in [0, 7, 15] {
+            let of_aerosol = shares(&earth(), &classes(&earth()), altitude)[1];
             for view in 0..VIEWS {
-                let at = KERNELS_AT + (altitude * VIEWS + view) * DIRECTIONS * 3;
                 for c in 0..3 {
-                    let sum: f32 = (0..DIRECTIONS).map(|d| plan.rows[at + d * 3 + c][0]).sum();
-                    // The sum over these directions is a quadrature: at the ground it loses 1.2e-3 of the light.
-                    assert!((sum - 1.0).abs() < 2e-3, "row {altitude}, view {view}: {sum}");
+                    let (next, drawn) = (kept(&plan, KERNELS_AT, altitude, view, c), kept(&plan, DRAWN_AT, altitude, view, c));
+                    let left = 1.0 - aerosol * of_aerosol[c];
+                    assert!((f64::from(next) - left).abs() < 1e-4, "row {altitude}, view {view}: {next} not {left}");
+                    assert!((drawn - 1.0).abs() < 1e-4, "row {altitude}, view {view}: {drawn}");
                 }
             }
         }
-        for (a, b) in [(0.3, 0.9), (-0.7, 0.2), (1.0, -0.4)] {
-            let (x, y) = (legendre(a), legendre(b));
-            // By the addition theorem at φ = 0 and up to degree 3, where no mode is missing.
-            let turn: f64 = (0..4).map(|l| (0..MODES).map(|m| x[m][l] * y[m][l] * if m > 0 { 2.0 } else { 1.0 }).sum::<f64>()).sum();
-            let cos = a * b + ((1.0 - a * a) * (1.0 - b * b)).sqrt();
-            let p = [1.0, cos, 0.5 * (3.0 * cos * cos - 1.0), 0.5 * (5.0 * cos * cos * cos - 3.0 * cos)];
-            let series: f64 = p.iter().enumerate().map(|(l, p)| (2 * l + 1) as f64 / (4.0 * PI) * p).sum();
-            assert!((turn - series).abs() < 1e-12, "{turn} {series}");
+    }
+
+    #[test]
+    fn light_is_turned_by_the_phase_function() {
+        // Rayleigh's: of a field cos² of the zenith angle, 7 + cos² of its 20th parts come out: χ₂ is a tenth.
+        let mut medium = earth();
+        medium.layers.truncate(1);
+        let plan = Plan::new(&medium);
+        for altitude in [0, 9] {
+            let directions = directions(&medium, altitude_m(&medium, altitude));
+            for view in 0..VIEWS {
+                let at = DRAWN_AT + (altitude * VIEWS + view) * DIRECTIONS * 3;
+                let found: f64 =
+                    directions.iter().enumerate().map(|(d, x)| f64::from(plan.rows[at + d * 3][0]) * x.cosine * x.cosine).sum();
+                let c = view_cosine(view);
+                let truth = 1.0 / 3.0 + 0.1 * (c * c - 1.0 / 3.0);
+                assert!((found / truth - 1.0).abs() < 2e-3, "row {altitude}, view {view}: {found} {truth}");
+            }
         }
     }
 
@@ -479,7 +450,7 @@ mod tests {
     fn light_along_a_direction_is_what_transmittance_leaves() {
         // A source of 1 per unit of extinction everywhere sends 1 − T: without absorption and with the ground black the steps must add up to it.
         let mut medium = earth();
-        medium.layers.iter_mut().for_each(|l| l.absorption_per_m = Vec3::ZERO);
+        medium.layers.iter_mut().for_each(|l| (l.absorption_per_m, l.phase) = (Vec3::ZERO, Phase::Rayleigh));
         let plan = Plan::new(&medium);
         let down = UP * PATH_ROWS; // from the datum: no way at all
         assert_eq!(plan.rows[down + HEAD_ROWS + 2][0], 0.0);

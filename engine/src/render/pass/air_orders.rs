@@ -7,7 +7,7 @@ use crate::air::model::orders::{ALTITUDES, DIRECTIONS, MAX_ORDERS, Plan, SUNS, V
 use crate::gpu::texture::Texture;
 use crate::gpu::{Gpu, ShaderLibrary};
 use crate::render::RenderError;
-use crate::render::pipeline::{compute_pipeline, sampler_entry, texture_entry, uniform_entry};
+use crate::render::pipeline::{compute_pipeline, loaded_entry, sampler_entry, texture_entry, uniform_entry};
 use crate::render::targets::HDR;
 use crate::scene::gpu_data::MAX_AIRS;
 use wgpu::util::DeviceExt as _;
@@ -46,6 +46,8 @@ pub struct Inputs<'a> {
     pub air: wgpu::BufferBinding<'a>,
     /// Its two transmittances, as an array.
     pub transmittance: &'a wgpu::TextureView,
+    /// Its table of the medium, as an array of one layer.
+    pub media: &'a wgpu::TextureView,
     /// Bilinear, clamped.
     pub linear: &'a wgpu::Sampler,
     /// All airs' irradiance, a storage array.
@@ -76,6 +78,7 @@ impl OrdersBaker {
             storage(6, false),
             storage(7, false),
             storage(8, false),
+            loaded_entry(9, TextureViewDimension::D2Array),
         ]);
         let all = layout(&[
             uniform_entry(3),
@@ -160,6 +163,7 @@ impl OrdersBaker {
                     (6, self.sources.as_entire_binding()),
                     (7, self.irradiance.as_entire_binding()),
                     (8, self.drawn.as_entire_binding()),
+                    (9, BindingResource::TextureView(inputs.media)),
                 ],
             );
             pass.set_bind_group(0, &group, &[]);

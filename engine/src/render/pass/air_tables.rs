@@ -271,6 +271,7 @@ impl AirBaker {
     fn bake_slot(&self, gpu: &Gpu, pass: &mut wgpu::ComputePass<'_>, slot: u32) {
         let Some(held) = self.slots.get(slot as usize).filter(|s| s.part != Part::Bare) else { return };
         let transmittance = layers_of(&self.transmittance, 2 * slot, 2, TextureViewDimension::D2Array);
+        let media = layers_of(&self.media, slot, 1, TextureViewDimension::D2Array);
         let air = self.air_in(slot);
         let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("air transmittance"),
@@ -278,17 +279,15 @@ impl AirBaker {
             entries: &[
                 wgpu::BindGroupEntry { binding: 0, resource: BindingResource::Buffer(air.clone()) },
                 wgpu::BindGroupEntry { binding: 1, resource: BindingResource::TextureView(&transmittance) },
-                wgpu::BindGroupEntry {
-                    binding: 2,
-                    resource: BindingResource::TextureView(&layers_of(&self.media, slot, 1, TextureViewDimension::D2Array)),
-                },
+                wgpu::BindGroupEntry { binding: 2, resource: BindingResource::TextureView(&media) },
             ],
         });
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &group, &[]);
         let [w, h] = TRANSMITTANCE_SIZE;
         pass.dispatch_workgroups(w.div_ceil(8), h.div_ceil(8), 1);
-        let inputs = Inputs { air, transmittance: &transmittance, linear: &self.linear, irradiance: &self.values.irradiance, slot };
+        let inputs =
+            Inputs { air, transmittance: &transmittance, media: &media, linear: &self.linear, irradiance: &self.values.irradiance, slot };
         self.orders.bake(gpu, pass, &Plan::new(&held.medium), &inputs);
     }
 
