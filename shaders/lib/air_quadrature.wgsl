@@ -38,9 +38,8 @@ const GAUSS_TWO: vec2<f32> = vec2<f32>(0.211324865405, 0.788675134595);
 // Distances of the places that lie at parts `x` of the points' own measure of a stretch.
 fn air_panel_places(path: AirPath, begin: f32, end: f32, x: vec2<f32>) -> vec2<f32> {
     let rising = 0.5 * (begin + end) + path.slope > 0.0;
-    let eye = rising && begin <= 0.0 && path.start <= 0.0;
     let u = select(1.0 - x, x, rising);
-    let away = (end - begin) * select(u * sqrt(u), u * u, eye);
+    let away = (end - begin) * u * u;
     return select(end - away, begin + away, rising);
 }
 
