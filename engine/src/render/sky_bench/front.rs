@@ -31,7 +31,7 @@ pub struct Entrant {
     pub technique: Technique,
     /// How it draws.
     pub setting: Setting,
-    /// Its light is in no unit: it is multiplied by one factor for the planet, the median's.
+    /// Its light is in no unit: it is multiplied by the factor that fits the planet best.
     pub fitted: bool,
 }
 
@@ -271,12 +271,10 @@ fn row(planet: &Planet, entrant: &Entrant, size_px: [u32; 2], rebuild_ms: f64, m
     }
 }
 
-/// The factor by which as many rays are too bright as too dark; what is not lit at all has no say. The least squares of relative errors would
-/// take the picture next to black, because darkness errs by 1 at most.
+/// The factor with which the relative errors have the least mean square. Darkness errs by 1 at most: where a model spreads over more than
+/// the rays' own range it comes out next to black.
 fn fit(drawn_over_true: &[f64]) -> f64 {
-    let mut lit: Vec<f64> = drawn_over_true.iter().copied().filter(|x| *x > 0.0).collect();
-    lit.sort_by(f64::total_cmp);
-    lit.get(lit.len() / 2).map_or(1.0, |x| 1.0 / x)
+    drawn_over_true.iter().sum::<f64>() / drawn_over_true.iter().map(|x| x * x).sum::<f64>().max(1e-300)
 }
 
 /// Root mean square and worst.

@@ -92,8 +92,12 @@ fn picture(path: &Path, title: &str, rows: &[Row], of: &dyn Fn(&Row) -> Summary)
         line.sort_by(|a, b| a.0.total_cmp(&b.0));
         let dot = if apart { colour.stroke_width(2) } else { colour.filled() };
         // The line goes through the settings that no other of the technique betters.
-        let mut least = f64::INFINITY;
-        let best = line.iter().copied().filter(|p| p.1 < std::mem::replace(&mut least, least.min(p.1)));
+        let mut best: Vec<(f64, f64)> = Vec::new();
+        for p in &line {
+            if best.last().is_none_or(|last| p.1 < last.1) {
+                best.push(*p);
+            }
+        }
         chart.draw_series(LineSeries::new(best, colour.stroke_width(if apart { 1 } else { 2 })))?;
         chart.draw_series(line.iter().map(|p| Circle::new(*p, 5, dot)))?.label(name).legend(move |(x, y)| Circle::new((x + 8, y), 5, dot));
     }
