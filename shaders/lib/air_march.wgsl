@@ -72,10 +72,9 @@ fn air_march(
     slot: i32, path: AirPath, end: f32, ray: vec3<f32>, sun: AirSun, body: Body, star: vec4<f32>, count: u32,
 ) -> AirLight {
     let cosine = dot(ray, sun.direction);
-    let phase = air_phase(air, media, slot, cosine);
     let along = AirRay(
-        path, ray, path.radius * dot(path.up, sun.direction), cosine, phase * sun.single,
-        air_aureole(air, cosine, phase) * sun.single, 2 * slot + i32(sun.multiple));
+        path, ray, path.radius * dot(path.up, sun.direction), cosine, air_phase(air, media, slot, cosine) * sun.single,
+        air_aureole(air, media, slot, cosine) * sun.single, 2 * slot + i32(sun.multiple));
     let night = air_night(air.shape.x, path, along.up_sun, cosine, sun.angular_radius, end);
     var shade = AirShade(vec4<f32>(-1.0), false);
     if AIR_ECLIPSES && body.ids.y > 0 {

@@ -1,8 +1,8 @@
 // The medium: an atmosphere as at most four classes that scatter side by side. Lengths in m, coefficients in m⁻¹ per channel.
 //
 // Twin of engine/src/air/medium/classes.rs; the struct is mirrored in engine/src/scene/gpu_air.rs. Up to four analytic layers are formulas
-// of altitude; any other medium is a table: `media`, a layer per slot, with rows over altitude (MEDIA_ROWS − 1 of them: scattering of the four
-// classes, extinction) and a last one over angle (phase functions, a class per channel). A pipeline that is drawn with for formulas alone sets
+// of altitude; any other medium is a table: `media`, a layer per slot, with rows over altitude (scattering of the four classes, extinction)
+// and over angle (phase functions, and those of the aureole, a class per channel). A pipeline that is drawn with for formulas alone sets
 // MEDIA_TABLES to false and does not even carry the branch.
 
 #include "lib/phase.wgsl"
@@ -14,6 +14,7 @@ const AIR_FLOOR_M: f32 = 10000.0;  // Medium::FLOOR_M
 const MEDIA_COLUMNS: u32 = 1024u;
 const MEDIA_EXTINCTION: u32 = 4u;
 const MEDIA_PHASE: u32 = 5u;
+const MEDIA_AUREOLE: u32 = 6u;
 
 struct Air {
     shape: vec4<f32>,           // radius of the datum, altitude of the top, 1 where the medium is a table, 1 where density jumps
@@ -116,21 +117,26 @@ fn air_matter(air: Air, media: texture_2d_array<f32>, slot: i32, altitude: f32) 
         air.extinction * d);
 }
 
-// Phase function of each class at the cosine of the scattering angle. Columns of the table go by the root of the angle.
+// Column of a scattering angle of this cosine: columns go by the root of the angle.
+fn media_angle(c: f32) -> f32 {
+    // acos loses the last of a small angle: there it is 2 asin √(½(1 − c)).
+    let half = sqrt(max(0.5 - 0.5 * c, 0.0));
+    let angle = select(acos(clamp(c, -1.0, 1.0)), 2.0 * half * (1.0 + half * half / 6.0), half < 0.1);
+    return sqrt(angle / 3.14159265359) * f32(MEDIA_COLUMNS - 1u);
+}
+
+// Phase function of each class at the cosine of the scattering angle.
 fn air_phase(air: Air, media: texture_2d_array<f32>, slot: i32, c: f32) -> vec4<f32> {
     if MEDIA_TABLES && air.shape.z > 0.0 {
-        // acos loses the last of a small angle: there it is 2 asin √(½(1 − c)).
-        let half = sqrt(max(0.5 - 0.5 * c, 0.0));
-        let angle = select(acos(clamp(c, -1.0, 1.0)), 2.0 * half * (1.0 + half * half / 6.0), half < 0.1);
-        return media_at(media, slot, MEDIA_PHASE, sqrt(angle / 3.14159265359) * f32(MEDIA_COLUMNS - 1u));
+        return media_at(media, slot, MEDIA_PHASE, media_angle(c));
     }
     return phase_values(air.phases, c);
 }
 
-// Where each class scatters light that forward peaks have turned before; that of a table is not blurred.
-fn air_aureole(air: Air, c: f32, phase: vec4<f32>) -> vec4<f32> {
+// Where each class scatters light that forward peaks have turned before.
+fn air_aureole(air: Air, media: texture_2d_array<f32>, slot: i32, c: f32) -> vec4<f32> {
     if MEDIA_TABLES && air.shape.z > 0.0 {
-        return phase;
+        return media_at(media, slot, MEDIA_AUREOLE, media_angle(c));
     }
     return phase_values(air.aureole, c);
 }

@@ -5,7 +5,7 @@ use engine::air::optics::{Amount, Gas, Molecule, Refraction};
 use engine::air::spectral::bands::channel_weights;
 use engine::air::spectral::rays::{Met, Ray, fitting};
 use engine::air::spectral::{Coefficients, Optics, SpectralLayer, SpectralMedium};
-use engine::air::{Air, Model, Phase, Profile};
+use engine::air::{Air, Phase, Profile};
 use engine::gpu::{ShaderLibrary, readback};
 use engine::light::spectrum::difference::shown;
 use engine::light::spectrum::{COUNT, Starlight, wavelength_nm};

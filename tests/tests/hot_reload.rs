@@ -141,9 +141,9 @@ fn the_frame_that_hears_of_a_saved_air_has_it() {
     ];
     let mut number = 0;
     for (what, save) in ways {
-        // The least of some: the machine has other work.
+        // The least of two: the machine has other work.
         let mut best: Option<Seen> = None;
-        for _ in 0..3 {
+        for _ in 0..2 {
             number += 1;
             let seen = desk.watch(&picture, |file| save(file, &text(number % 5)));
             assert!(seen.at_once, "{what}: the frame that heard of it did not draw it");
@@ -151,13 +151,13 @@ fn the_frame_that_hears_of_a_saved_air_has_it() {
             while Instant::now() < desk.settled() {
                 desk.hear();
             }
-            assert_eq!(desk.draw(), desk.afresh(), "{what}: not the air of the file");
             picture = desk.draw();
             assert!(what.starts_with("twice") || seen.picture == picture, "{what}: the first frame had not all of it");
             if best.as_ref().is_none_or(|b| seen.heard < b.heard) {
                 best = Some(seen);
             }
         }
+        assert_eq!(picture, desk.afresh(), "{what}: not the air of the file");
         let seen = best.unwrap();
         println!("{what}: heard after {:.0} ms, drawn after {:.0} ms", seen.heard.as_secs_f64() * 1e3, seen.drawn.as_secs_f64() * 1e3);
         assert!(seen.heard < Duration::from_millis(200), "{what}: {:?}", seen.heard);

@@ -16,7 +16,7 @@ pub const MAX_AIRS: usize = 32;
 /// Columns of the tables of media that are not formulas: `MEDIA_COLUMNS` of `shaders/lib/medium.wgsl`.
 pub const MEDIA_COLUMNS: usize = 1024;
 /// Their rows: scattering of each class, extinction, phase functions.
-pub const MEDIA_ROWS: usize = Classes::MAX + 2;
+pub const MEDIA_ROWS: usize = Classes::MAX + 3;
 /// Altitudes of jumps that an air may have.
 const MAX_JUMPS: usize = 8;
 /// Slope of a tent that is a step, m⁻¹.
@@ -195,6 +195,9 @@ pub fn media_rows(medium: &Medium, classes: &Classes) -> Vec<[f32; 4]> {
     rows.extend(columns().map(|x| held(medium.extinction(altitude(x)))));
     let value = |k: usize, x: f64| classes.list.get(k).map_or(0.0, |c| c.value(libm::cos(x * x * core::f64::consts::PI)));
     rows.extend(columns().map(|x| [0, 1, 2, 3].map(|k| narrow(value(k, x)))));
+    let angles: Vec<f64> = columns().map(|x| x * x * core::f64::consts::PI).collect();
+    let blurred: Vec<Vec<f64>> = classes.list.iter().map(|c| Truncated::new(c).blurred(c, &angles)).collect();
+    rows.extend((0..MEDIA_COLUMNS).map(|i| [0, 1, 2, 3].map(|k| narrow(blurred.get(k).map_or(0.0, |b| b[i])))));
     rows
 }
 
