@@ -6,7 +6,7 @@
 
 #include "lib/air_orders_plan.wgsl"
 
-@group(0) @binding(3) var<uniform> order: vec4<u32>;                          // 0, how many, slot, 0
+@group(0) @binding(3) var<uniform> order: vec4<u32>;                          // 0, how many, slot, which of them is a seed (0: none)
 @group(0) @binding(4) var<storage, read> sources: array<vec4<f32>>;           // order, altitude, view, sun: coded modes of red, of green, of blue
 @group(0) @binding(5) var<storage, read> irradiance: array<vec4<f32>>;        // order, altitude, sun: its fourth root; then the aureole's
 @group(0) @binding(6) var<storage, read_write> scalars: array<vec4<f32>>;     // products, row by row of PLAN_MAX_ORDERS
@@ -98,7 +98,12 @@ fn decoded(k: u32, texel: u32, channel: u32) -> vec4<f32> {
 // A thread per sun, a group per view and altitude.
 @compute @workgroup_size(32)
 fn sum(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_index) k: u32) {
-    if k < 3u {
+    if order.w > 0u {
+        // Orders before the seed, and its last: M₁ + A M₁ + … + Aⁿ seed.
+        if k + 1u < order.y {
+            share[k] = vec3<f32>(f32(u32(k + 1u < order.w || k + 2u == order.y)));
+        }
+    } else if k < 3u {
         solve(k);
     }
     workgroupBarrier();

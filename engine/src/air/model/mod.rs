@@ -10,7 +10,9 @@ pub mod orders;
 pub mod physical;
 pub mod shell;
 pub mod spread;
+mod sun_map;
 pub mod thickness;
+pub mod two_stream;
 pub mod view_space;
 pub mod view_table;
 

@@ -17,10 +17,15 @@
 //! in f64, for any layers, profiles and phase functions, once for a medium.
 
 use super::forward::Truncated;
+use super::sun_map::dip;
+use super::two_stream::{self, Column};
 use crate::air::{Class, Classes, Medium};
 use crate::space::relative::narrow;
 use core::f64::consts::PI;
 use glam::DVec3;
+
+pub use super::sun_map::SunMap;
+pub use super::two_stream::SEED_ROWS;
 
 /// Heights of the sun in a table.
 pub const SUNS: usize = 32;
@@ -56,45 +61,11 @@ pub const DRAWN_AT: usize = KERNELS_AT + ALTITUDES * VIEWS * DIRECTIONS * 3;
 pub const ROWS: usize = 2 * DRAWN_AT - KERNELS_AT;
 /// Most orders that are computed one by one.
 pub const MAX_ORDERS: u32 = 8;
-
-/// How the table's coordinate for the sun runs: `x = (asinh(t · scale) + low) · inverse`, `t = 2 sin(e/2)`, e the sun's angle above the
-/// horizon of the altitude; from the knee upwards evenly in t, one unit of asinh by each knee. Dense at the terminator, within an angle in
-/// which the air's own curvature lets day and night mix; it ends where no air in sight is lit.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SunMap {
-    /// 1 / that angle, rad⁻¹.
-    pub scale: f64,
-    /// asinh at the deepest night, negated.
-    pub low: f64,
-    /// 1 / the range.
-    pub inverse: f64,
-    /// t of the knee.
-    pub knee: f64,
-}
-
-impl SunMap {
-    /// For the air of a medium.
-    pub fn new(medium: &Medium) -> Self {
-        let (sine, cosine) = dip(medium.bottom_radius_m, medium.top_altitude_m);
-        let dip = libm::atan2(sine, cosine);
-        let scale = 1.0 / (0.35 * dip).max(0.01);
-        let knee = 0.35;
-        // Twice the dip: where the farthest air in sight of the ground sees the sun on its horizon.
-        let night = (2.5 * dip + 0.05).min(0.5 * PI);
-        let low = libm::asinh(2.0 * libm::sin(0.5 * night) * scale);
-        let high = libm::asinh(knee * scale) + (2.0 * (1.0 + sine)).sqrt() / knee - 1.0;
-        Self { scale, low, inverse: 1.0 / (low + high), knee }
-    }
-}
-
-/// Sine and cosine of the angle by which the horizon lies below the level at an altitude.
-fn dip(radius_m: f64, altitude_m: f64) -> (f64, f64) {
-    let r = radius_m + altitude_m;
-    ((altitude_m * (2.0 * radius_m + altitude_m)).max(0.0).sqrt() / r, radius_m / r)
-}
+/// Orders that are computed before a two-stream solution takes the place of all that follow, and is scattered as often.
+const BEFORE_SEED: u32 = 2;
 
 /// Altitude of a table's row, m: evenly in its root; the last a hair below the top.
-fn altitude_m(medium: &Medium, row: usize) -> f64 {
+pub(super) fn altitude_m(medium: &Medium, row: usize) -> f64 {
     let x = row as f64 / (ALTITUDES - 1) as f64;
     medium.top_altitude_m * (x * x).min(1.0 - 1e-6)
 }
@@ -106,10 +77,12 @@ pub struct Plan {
     /// the datum's radius; weight in the irradiance), (transmittance to the ground × albedo/π, rgb; 0), then its steps:
     /// (radius at the eye, distance, both by the radius at the step; zenith cosine; altitude, m), (table's row; sine and cosine of the horizon's
     /// dip; 0), (share of the light of a unit source that arrives, rgb; 0), (the same of each class of layers).
-    /// A kernel, by altitude, view and direction: the modes of red, of green, of blue.
+    /// A kernel, by altitude, view and direction: the modes of red, of green, of blue. In deep air [`SEED_ROWS`] more.
     pub rows: Vec<[f32; 4]>,
-    /// Orders to compute one by one before they are combined.
+    /// Orders to compute before they are combined.
     pub orders: u32,
+    /// Which of them is a two-stream solution in deep air, not the order after the one before; 0: none.
+    pub seed: u32,
 }
 
 /// One direction from an altitude.
@@ -129,19 +102,25 @@ impl Plan {
     /// For a medium.
     pub fn new(medium: &Medium) -> Self {
         let classes = classes(medium);
+        let column = Column::new(medium, &classes);
+        let deep = column.is_deep();
         let mut rows = Vec::with_capacity(ROWS);
         let [mut kernels, mut drawn] = [(); 2].map(|()| Vec::with_capacity(DRAWN_AT - KERNELS_AT));
         for row in 0..ALTITUDES {
             let altitude_m = altitude_m(medium, row);
             let directions = directions(medium, altitude_m);
             for (i, direction) in directions.iter().enumerate() {
-                path_rows(medium, &classes, altitude_m, direction, i >= UP, &mut rows);
+                path_rows(medium, &classes, altitude_m, direction, (i >= UP, deep), &mut rows);
             }
             kernel_rows(medium, &classes, row, &directions, [&mut kernels, &mut drawn]);
         }
         rows.append(&mut kernels);
         rows.append(&mut drawn);
-        Self { rows, orders: orders(medium) }
+        if deep {
+            rows.extend(two_stream::rows(&column));
+            return Self { rows, orders: 2 * BEFORE_SEED + 1, seed: BEFORE_SEED };
+        }
+        Self { rows, orders: orders(medium), seed: 0 }
     }
 }
 
@@ -241,12 +220,24 @@ pub(super) fn step_at(low: f64, end: f64, part: f64) -> f64 {
     low + y * y.abs()
 }
 
-fn row3(v: DVec3, w: f64) -> [f32; 4] {
+pub(super) fn row3(v: DVec3, w: f64) -> [f32; 4] {
     // A medium that no file could hold must not put a NaN into the tables.
     [v.x, v.y, v.z, w].map(|x| if x.is_finite() { narrow(x) } else { 0.0 })
 }
 
-fn path_rows(medium: &Medium, classes: &[(Class, Truncated)], from_m: f64, direction: &Direction, hits: bool, rows: &mut Vec<[f32; 4]>) {
+/// Mean of x on [0, 1] weighed by e^(−depth x).
+fn centroid(depth: f64) -> f64 {
+    if depth < 1e-2 { 0.5 - depth / 12.0 } else { 1.0 / depth - 1.0 / libm::expm1(depth) }
+}
+
+fn path_rows(
+    medium: &Medium,
+    classes: &[(Class, Truncated)],
+    from_m: f64,
+    direction: &Direction,
+    (hits, deep): (bool, bool),
+    rows: &mut Vec<[f32; 4]>,
+) {
     let (bottom, top) = (medium.bottom_radius_m, medium.top_altitude_m);
     let (r, q0) = (bottom + from_m, from_m * (2.0 * bottom + from_m));
     let slope = r * direction.cosine;
@@ -286,6 +277,8 @@ fn path_rows(medium: &Medium, classes: &[(Class, Truncated)], from_m: f64, direc
         let arrives = DVec3::from_array(
             [0, 1, 2].map(|c| if depth[c] > 1e-4 { (1.0 - kept[c]) / extinction[c] } else { length * (1.0 - 0.5 * depth[c]) }),
         ) * through;
+        // Where the light comes from: of deep steps the near side.
+        let s = if deep { from + length * depth.to_array().map(centroid).iter().sum::<f64>() / 3.0 } else { s };
         let h = altitude(s);
         let (sine, cosine) = dip(bottom, h.max(0.0));
         let place = (h / top).clamp(0.0, 1.0).sqrt() * (ALTITUDES - 1) as f64;

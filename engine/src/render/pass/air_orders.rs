@@ -30,6 +30,7 @@ pub struct OrdersBaker {
     first: wgpu::ComputePipeline,
     next: wgpu::ComputePipeline,
     turn: wgpu::ComputePipeline,
+    seed: wgpu::ComputePipeline,
     products: wgpu::ComputePipeline,
     sum: wgpu::ComputePipeline,
     gathered: wgpu::Buffer,
@@ -104,6 +105,7 @@ impl OrdersBaker {
             first: compute_pipeline(gpu, "air_orders", &module, &[&each], "first"),
             next: compute_pipeline(gpu, "air_orders", &module, &[&each], "next"),
             turn: compute_pipeline(gpu, "air_orders", &module, &[&each], "turn"),
+            seed: compute_pipeline(gpu, "air_orders", &module, &[&each], "seed"),
             products: compute_pipeline(gpu, "air_orders_sum", &sum_module, &[&all], "products"),
             sum: compute_pipeline(gpu, "air_orders_sum", &sum_module, &[&all], "sum"),
             layout: each,
@@ -146,6 +148,7 @@ impl OrdersBaker {
             gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some("air orders"), contents, usage })
         };
         let orders = plan.orders.clamp(2, MAX_ORDERS);
+        let seed = plan.seed;
         let plan = buffer(bytemuck::cast_slice(&plan.rows), BufferUsages::STORAGE);
         let (directions, views, altitudes) = (DIRECTIONS as u32, VIEWS as u32, ALTITUDES as u32);
         for order in 0..orders {
@@ -167,12 +170,16 @@ impl OrdersBaker {
                 ],
             );
             pass.set_bind_group(0, &group, &[]);
-            pass.set_pipeline(if order == 0 { &self.first } else { &self.next });
-            pass.dispatch_workgroups(directions, altitudes, 1);
-            pass.set_pipeline(&self.turn);
+            if order > 0 && order == seed {
+                pass.set_pipeline(&self.seed);
+            } else {
+                pass.set_pipeline(if order == 0 { &self.first } else { &self.next });
+                pass.dispatch_workgroups(directions, altitudes, 1);
+                pass.set_pipeline(&self.turn);
+            }
             pass.dispatch_workgroups(views, altitudes, 1);
         }
-        let number = buffer(bytemuck::bytes_of(&[0, orders, inputs.slot, 0]), BufferUsages::UNIFORM);
+        let number = buffer(bytemuck::bytes_of(&[0, orders, inputs.slot, seed]), BufferUsages::UNIFORM);
         let group = bind(
             gpu,
             &self.sum_layout,
@@ -187,8 +194,10 @@ impl OrdersBaker {
             ],
         );
         pass.set_bind_group(0, &group, &[]);
-        pass.set_pipeline(&self.products);
-        pass.dispatch_workgroups(orders - 1, orders, 1);
+        if seed == 0 {
+            pass.set_pipeline(&self.products);
+            pass.dispatch_workgroups(orders - 1, orders, 1);
+        }
         pass.set_pipeline(&self.sum);
         pass.dispatch_workgroups(views, altitudes, 1);
     }
