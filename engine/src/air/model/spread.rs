@@ -158,9 +158,14 @@ fn coefficients(medium: &Medium, altitude_m: f64) -> (DVec3, DVec3) {
 impl Sunlight {
     const CELLS: usize = 96;
 
+    /// Root of a cell's altitude over the top's.
+    fn root(cell: usize) -> f64 {
+        cell as f64 / Self::CELLS as f64
+    }
+
     fn new(medium: &Medium) -> Self {
         let top_m = medium.top_altitude_m;
-        let altitude = |i: usize| top_m * (i as f64 / Self::CELLS as f64).powi(2);
+        let altitude = |i: usize| top_m * Self::root(i) * Self::root(i);
         let mut depth = vec![DVec3::ZERO; Self::CELLS + 1];
         let mut scattered = vec![0.0; Self::CELLS + 1];
         for i in (0..Self::CELLS).rev() {
@@ -176,7 +181,7 @@ impl Sunlight {
     fn above(&self, share: f64) -> Option<f64> {
         let whole = self.scattered[0];
         let at = self.scattered.partition_point(|s| *s > share * whole);
-        (whole > 0.0 && whole.is_finite()).then(|| self.top_m * (at as f64 / Self::CELLS as f64).powi(2))
+        (whole > 0.0 && whole.is_finite()).then(|| self.top_m * Self::root(at) * Self::root(at))
     }
 
     /// Optical depth straight up from an altitude.
