@@ -1,5 +1,6 @@
 // One order of scattering after another, for the table of lib/air_orders.wgsl: `first` gathers the light scattered once along every
 // direction of the plan (and sunlight from the ground), `next` that of the order before; `turn` scatters what was gathered once more.
+// In deep air `seed` begins a second sequence.
 // The method and the plan: engine/src/air/model/orders.rs. Rust side: engine/src/render/pass/air_orders.rs; then comes air_orders_sum.wgsl.
 
 #include "lib/air.wgsl"
@@ -143,7 +144,7 @@ fn next(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_index) k
     store(at, k, sum);
 }
 
-// In deep air, in place of an order: the two-stream solution, alike in all directions. A thread per sun, a group per view and altitude.
+// In deep air, in place of an order: the two-stream solution, alike in all azimuths. A thread per sun, a group per view and altitude.
 @compute @workgroup_size(32)
 fn seed(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_index) k: u32) {
     let column = PLAN_SEED_AT + at.y * ORDERS_SUNS + k;

@@ -3,6 +3,7 @@
 // Orders follow M₂ = A M₁, M₃ = A M₂ …; their sum x solves x = M₁ + A x. A geometric tail would guess the rest from the last ratio. Better: of all
 // x = M₁ + Σ yₖ Mₖ₊₁ take the one that solves it best. With z = Σ yₖ Mₖ the equation's remainder M₁ − z + A z is M₁ − Σ yₖ (Mₖ − Mₖ₊₁), which is made least in the
 // mean square: this is what GMRES does in as many steps [Saad & Schultz 1986], and A z + M₁ is one step further at no cost.
+// In deep air a seed that is next to x itself stands in place of the rest: nothing is sought (engine/src/air/model/two_stream.rs).
 
 #include "lib/air_orders_plan.wgsl"
 

@@ -13,6 +13,8 @@
 //! Forward peaks are cut off first ([`super::forward`]): to the orders the light that they turn is sunlight still, or goes on along its
 //! direction. For what is drawn a second set of kernels puts it back, blurred as far as the directions lie apart.
 //!
+//! In deep air the first two orders are followed by a solution of another kind, scattered as often ([`super::two_stream`]).
+//!
 //! Where the steps lie, how much light each lets through and the kernels K depend on the medium alone: [`Plan`] computes them here,
 //! in f64, for any layers, profiles and phase functions, once for a medium.
 
