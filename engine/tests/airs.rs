@@ -16,6 +16,11 @@ const FOV_RAD: f32 = 0.9;
 const LUX: f32 = 1.0e5;
 const FAR_M: f32 = 1.5e11;
 
+/// Tangent of half the field of view.
+fn tan_half() -> f64 {
+    libm::tan(0.5 * f64::from(FOV_RAD))
+}
+
 struct Stage {
     gpu: Gpu,
     renderer: Renderer,
@@ -100,7 +105,7 @@ fn earthly(radius_m: f64) -> Air {
 /// Unit direction through a pixel's middle.
 fn direction(x: usize, y: usize) -> DVec3 {
     let [w, h] = SIZE.map(f64::from);
-    let tan_y = (0.5 * f64::from(FOV_RAD)).tan();
+    let tan_y = tan_half();
     DVec3::new((2.0 * (x as f64 + 0.5) / w - 1.0) * tan_y * w / h, (1.0 - 2.0 * (y as f64 + 0.5) / h) * tan_y, -1.0).normalize()
 }
 
@@ -118,7 +123,7 @@ fn over(body: &Body, ray: DVec3, behind: DVec3) -> DVec3 {
     let Some(Air { model: Model::Thickness(fog), .. }) = &body.air else { panic!("a bank of fog") };
     let share = width(body, ray) / fog.scale_m.expect("it was given");
     let light = fog.colour.as_dvec3() * share * f64::from(LUX) / core::f64::consts::PI;
-    light + behind * (-f64::from(fog.opacity) * share).exp()
+    light + behind * libm::exp(-f64::from(fog.opacity) * share)
 }
 
 /// True where no edge of a ball lies within two pixels.
@@ -126,7 +131,7 @@ fn is_even(body: &Body, ray: DVec3) -> bool {
     let centre = body.centre_m.as_dvec3();
     let miss = (centre - ray * ray.dot(centre)).length();
     let radius = body.air.as_ref().map_or(0.0, |air| air.medium.top_altitude_m);
-    let pixel = 2.0 * (0.5 * f64::from(FOV_RAD)).tan() / f64::from(SIZE[1]);
+    let pixel = 2.0 * tan_half() / f64::from(SIZE[1]);
     (miss - radius).abs() > 2.0 * pixel * centre.length()
 }
 
@@ -187,7 +192,7 @@ fn together(bodies: [&Body; 2], ray: DVec3) -> DVec3 {
             let Some(Air { model: Model::Thickness(fog), medium, .. }) = &body.air else { panic!("a bank of fog") };
             if at.distance(body.centre_m.as_dvec3()) < medium.top_altitude_m {
                 let share = ds / fog.scale_m.expect("it was given");
-                light += fog.colour.as_dvec3() * (f64::exp(-depths[1 - i]) * share * f64::from(LUX) / core::f64::consts::PI);
+                light += fog.colour.as_dvec3() * (libm::exp(-depths[1 - i]) * share * f64::from(LUX) / core::f64::consts::PI);
                 depths[i] += f64::from(fog.opacity) * share;
             }
         }
@@ -235,7 +240,7 @@ fn black_fog_far_off_is_as_blue_as_a_black_ball_there() {
     let [ball, fog, clear] = [vec![ball, ground.clone()], vec![fog, ground.clone()], vec![ground]].map(|bodies| stage.take(&scene(bodies)));
     let along = at.normalize();
     let mut count = 0;
-    for (x, y) in (0..64).flat_map(|y| (0..96).map(move |x| (x, y))).filter(|(x, y)| direction(*x, *y).dot(along) > f64::cos(0.04)) {
+    for (x, y) in (0..64).flat_map(|y| (0..96).map(move |x| (x, y))).filter(|(x, y)| direction(*x, *y).dot(along) > libm::cos(0.04)) {
         count += 1;
         let pixel = |taken: &Taken, c: usize| f64::from(taken.hdr[4 * (y * SIZE[0] as usize + x) + c]);
         for c in 0..3 {
@@ -302,7 +307,7 @@ fn a_second_air_costs_by_what_it_covers() {
     let ground = |air| body(1, DVec3::NEG_Y * 6.4002e6, 6.4e6, Surface::Smooth, air);
     let second = |share: f64| {
         // A disc of this share of the picture, air included.
-        let area = 4.0 * (0.5 * f64::from(FOV_RAD)).tan().powi(2) * f64::from(SIZE[0]) / f64::from(SIZE[1]);
+        let area = 4.0 * tan_half() * tan_half() * f64::from(SIZE[0]) / f64::from(SIZE[1]);
         let distance = 6.46e6 / (area * share / core::f64::consts::PI).sqrt();
         body(2, DVec3::new(0.1, 0.2, -1.0).normalize() * distance, 6.4e6, Surface::Smooth, earthly(6.4e6))
     };
@@ -381,7 +386,7 @@ fn a_second_sun_adds_a_second_limb() {
 #[test]
 fn a_body_that_becomes_a_point_does_not_jump() {
     let mut stage = Stage::new();
-    let pixel = 2.0 * (0.5 * f64::from(FOV_RAD)).tan() / f64::from(SIZE[1]);
+    let pixel = 2.0 * tan_half() / f64::from(SIZE[1]);
     // Light over the disc's size in pixels, across what has its air drawn.
     let mut light = |px: f64| {
         let planet = body(1, DVec3::new(0.01, 0.007, -1.0) * (6.4e6 / (px * pixel)), 6.4e6, Surface::Smooth, earthly(6.4e6));

@@ -18,6 +18,9 @@ use std::time::{Duration, Instant};
 const SIZE: (u32, u32) = (96, 54);
 const CAMERA: &str = "at:verdant,15,62,200,sun,5";
 
+/// A way to save a file with this text.
+type Save = dyn Fn(&Path, &str);
+
 /// A flight whose files are followed, and its pictures.
 struct Desk {
     assets: Assets,
@@ -109,7 +112,7 @@ fn the_frame_that_hears_of_a_saved_air_has_it() {
     let mut picture = desk.draw();
     assert_eq!(picture, desk.draw(), "a picture of the same air is the same");
     let beside = |file: &Path, name: &str| file.with_file_name(name);
-    let ways: [(&str, &dyn Fn(&Path, &str)); 6] = [
+    let ways: [(&str, &Save); 6] = [
         ("written over", &over),
         ("beside it and renamed, as vim", &|file, text| {
             fs::rename(file, beside(file, "atmosphere.patch.toml~")).unwrap();

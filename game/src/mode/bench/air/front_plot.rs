@@ -8,6 +8,9 @@ use engine::render::sky_bench::view::Light;
 use plotters::prelude::*;
 use std::path::Path;
 
+/// What is drawn of a technique: its name, colour, whether it stands apart, and its places.
+type Curve = (String, RGBColor, bool, Vec<(f64, f64)>);
+
 const SIZE: (u32, u32) = (900, 600);
 /// Where an error is less, or a picture takes less of the yardstick's time, it is drawn on the edge.
 const LEAST: f64 = 1e-4;
@@ -80,7 +83,7 @@ fn picture(path: &Path, title: &str, rows: &[Row], of: &dyn Fn(&Row) -> Summary)
         .y_label_formatter(&number)
         .draw()?;
     chart.draw_series(std::iter::once(PathElement::new(stairs(&places, (x1, y1)), RGBColor(160, 160, 160).stroke_width(2))))?;
-    let mut curves: Vec<(String, RGBColor, bool, Vec<(f64, f64)>)> = Vec::new();
+    let mut curves: Vec<Curve> = Vec::new();
     for row in rows {
         let (name, colour, apart) = curve(row);
         match curves.iter_mut().find(|c| c.0 == name) {
