@@ -111,15 +111,14 @@ fn the_frame_that_hears_of_a_saved_air_has_it() {
     let mut desk = Desk::open(root.path());
     let mut picture = desk.draw();
     assert_eq!(picture, desk.draw(), "a picture of the same air is the same");
-    let beside = |file: &Path, name: &str| file.with_file_name(name);
     let ways: [(&str, &Save); 6] = [
         ("written over", &over),
         ("beside it and renamed, as vim", &|file, text| {
-            fs::rename(file, beside(file, "atmosphere.patch.toml~")).unwrap();
+            fs::rename(file, file.with_file_name("atmosphere.patch.toml~")).unwrap();
             fs::write(file, text).unwrap();
         }),
         ("a temporary file renamed over it, as sed -i", &|file, text| {
-            let new = beside(file, "sedK3pQ0x");
+            let new = file.with_file_name("sedK3pQ0x");
             fs::write(&new, text).unwrap();
             fs::rename(new, file).unwrap();
         }),
