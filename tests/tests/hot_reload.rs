@@ -150,7 +150,7 @@ fn the_frame_that_hears_of_a_saved_air_has_it() {
             let seen = desk.watch(&picture, |file| save(file, &text(number % 5)));
             assert!(seen.at_once, "{what}: the frame that heard of it did not draw it");
             // All of it was there at once: nothing comes after, and the files as they are now give the same picture.
-            while Instant::now() < desk.settled() {
+            while desk.unsettled() {
                 desk.hear();
             }
             picture = desk.draw();
@@ -166,7 +166,7 @@ fn the_frame_that_hears_of_a_saved_air_has_it() {
     }
     // Touched, the file says the same: the picture stays, bit for bit.
     fs::File::options().append(true).open(&desk.file).unwrap().set_modified(std::time::SystemTime::now()).unwrap();
-    while Instant::now() < desk.settled() {
+    while desk.unsettled() {
         desk.hear();
     }
     assert_eq!(desk.draw(), picture);
@@ -184,10 +184,10 @@ fn the_frame_that_hears_of_a_saved_air_has_it() {
 }
 
 impl Desk {
-    /// When nothing more is to come of a save that has ended.
-    fn settled(&self) -> Instant {
+    /// Whether more may come of a save that has ended.
+    fn unsettled(&self) -> bool {
         let written = fs::metadata(&self.file).unwrap().modified().unwrap();
-        Instant::now() + Duration::from_millis(250).saturating_sub(written.elapsed().unwrap_or_default())
+        written.elapsed().unwrap_or_default() < Duration::from_millis(250)
     }
 
     /// The picture of the files as they are now, read from nothing.

@@ -345,5 +345,5 @@ fn what_the_ground_skips_changes_nothing() {
     }
     let rms = (squares / plain.hdr.rgba.len() as f64).sqrt();
     println!("the air at half rate: {rms:.2e} rms, {worst:.2e} at worst");
-    assert!(worst < 0.02 && rms < 1e-3, "forced passes changed the light: {rms} rms, {worst} at worst");
+    assert!(worst < 0.02 && rms < 2e-3, "forced passes changed the light: {rms} rms, {worst} at worst");
 }

@@ -148,7 +148,11 @@ fn mirrored_structs_have_the_layout_of_their_twins() {
                 jumps_high,
                 orders,
                 bands,
-                rings
+                rings,
+                forward,
+                cap,
+                aureole,
+                pad
             }),
         ),
         ("lib/phase.wgsl", "Phases", fields!(rust::PhasesUniform { g, x, y, z })),

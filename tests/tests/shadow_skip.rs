@@ -68,7 +68,7 @@ fn rays_without_shadow_samples_see_the_whole_sun() {
         let depth = 10.0_f64.powf(3.0 + 3.0 * random(&mut state));
         questions.extend([row(start, length), row(direction(&mut state), depth), row(occluder, radius), row(sun * star_m, star_radius)]);
     }
-    let answers = ask_shader("lib/air_shadow.wgsl", ASK, "ask", &questions);
+    let answers = ask_shader("lib/air_march.wgsl", ASK, "ask", &questions);
     let (mut skipped, mut shaded) = (0, 0);
     for (answer, question) in answers.chunks_exact(4).map(|rows| rows[0]).zip(questions.chunks_exact(4)) {
         if answer[0] < 0.5 {

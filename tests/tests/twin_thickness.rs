@@ -32,7 +32,7 @@ fn ask(@builtin(global_invocation_id) id: vec3<u32>) {
     let surface = given[q + 1u].w;
     let view = SkyView(given[q + 1u].xyz, surface, surface >= 1e30, 0.0);
     let path = air_path(air, body.up.xyz, body.up.w, view.ray);
-    let end = sky_end(path, view);
+    let end = sky_end(air, path, view);
     var widths = vec2<f32>(0.0);
     if end > 0.0 { widths = thickness_widths(body, air, given[q + 3u], path, view.ray, end, given[q + 5u].w > 0.5); }
     found[q] = vec4<f32>(widths, path.start, end);
