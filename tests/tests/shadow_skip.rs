@@ -8,7 +8,7 @@ const ASK: &str = r"
 @group(0) @binding(1) var<storage, read_write> answers: array<vec4<f32>>;
 
 // Four rows each: the ray's start and length, its direction and how far scattered light comes, the occluder, the star. Of the answer the first row
-// counts: 1 where shadows are sampled; the least of all samples, direct and diffuse.
+// counts: 1 where shadows are sampled; the least of all samples, at the point and around it.
 @compute @workgroup_size(64)
 fn ask(@builtin(global_invocation_id) id: vec3<u32>) {
     let at = 4u * id.x;
@@ -22,11 +22,12 @@ fn ask(@builtin(global_invocation_id) id: vec3<u32>) {
     body.occluders[0] = questions[at + 2u];
     let star = questions[at + 3u];
     let shade = air_shade(body, star, start.xyz, ray.xyz, start.w, ray.w);
-    let rings = Rings(mat4x3<f32>(vec3<f32>(0.3), vec3<f32>(0.2), vec3<f32>(0.1), vec3<f32>(0.1)), ray.w * vec4<f32>(0.2, 0.4, 0.7, 1.0));
+    let radii = ray.w * vec4<f32>(0.2, 0.4, 0.7, 1.0);
     var least = vec2<f32>(1.0);
     for (var i = 0u; i <= 200u; i++) {
-        let eclipse = eclipse_at(body, star, start.xyz + ray.xyz * (start.w * f32(i) / 200.0), rings);
-        least = min(least, vec2<f32>(eclipse.direct, min(eclipse.diffuse.r, min(eclipse.diffuse.g, eclipse.diffuse.b))));
+        let here = start.xyz + ray.xyz * (start.w * f32(i) / 200.0);
+        let around = eclipse_around(body, star, here, radii);
+        least = min(least, vec2<f32>(eclipse_visible(body, star, here), min(min(around.x, around.y), min(around.z, around.w))));
     }
     answers[at] = vec4<f32>(select(0.0, 1.0, shade.falls), least, 0.0);
 }
