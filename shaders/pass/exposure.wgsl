@@ -19,6 +19,8 @@ struct Meter {
 // Twins of the constants in engine::light::exposure.
 const BRIGHT_HALF_EV: f32 = 0.6;
 const HIGHLIGHT_COST_EV: f32 = 1.3;
+const BLACK_EV: f32 = 14.0;
+const DISC_LOG2: f32 = 22.0;
 
 var<workgroup> local_bins: array<atomic<u32>, 256>;
 
@@ -48,22 +50,39 @@ fn dimness_ev(luminance_cd_m2: f32) -> f32 {
     return max(log2(0.6769 / key), 0.0);
 }
 
+fn log2_of_bin(i: u32) -> f32 {
+    return (f32(i) - 0.5) / meter.range.y + meter.range.x;
+}
+
 // One step of adaptation. Twin of engine::light::exposure::{ev100_of_histogram, adapt, exposure_of_ev100}.
 @compute @workgroup_size(1)
 fn settle() {
+    var below = 0.0;
+    for (var i = 1u; i < 256u; i++) {
+        below += select(0.0, f32(atomicLoad(&histogram[i])), log2_of_bin(i) < DISC_LOG2);
+    }
+    // What the highlights make black does not vote.
+    var count = 0.0;
+    var first = 1u;
+    var black = meter.range.x;
+    for (var i = 1u; i < 256u; i++) {
+        black = select(black, log2_of_bin(i) - BLACK_EV, count < below * meter.limit.w);
+        count += f32(atomicLoad(&histogram[i]));
+    }
     var total = 0.0;
     for (var i = 1u; i < 256u; i++) {
-        total += f32(atomicLoad(&histogram[i]));
+        first = select(first, i + 1u, log2_of_bin(i) < black);
+        total += select(0.0, f32(atomicLoad(&histogram[i])), i >= first);
     }
     // Mean of log luminance between two percentiles, and what only the brightest pixels exceed.
     var before = 0.0;
     var sum = 0.0;
     var weight = 0.0;
     var bright = meter.range.x;
-    for (var i = 1u; i < 256u; i++) {
+    for (var i = first; i < 256u; i++) {
         let after = before + f32(atomicLoad(&histogram[i]));
         let inside = max(min(after, total * meter.trim.y) - max(before, total * meter.trim.x), 0.0);
-        let log2_luminance = (f32(i) - 0.5) / meter.range.y + meter.range.x;
+        let log2_luminance = log2_of_bin(i);
         sum += inside * log2_luminance;
         weight += inside;
         bright = select(bright, log2_luminance, before < total * meter.limit.w);

@@ -20,6 +20,10 @@ pub const HIGHLIGHT: [f32; 2] = [0.985, 1.8];
 /// Stops by which the rest is darker for that at most: in empty space a star's disc alone is more than that share of what is counted, and the limb
 /// beside it must not drown.
 pub const HIGHLIGHT_COST_EV: f32 = 1.3;
+/// What is by more stops darker than the highlights is black beside them and does not vote: the night side of a world behind its bright crescent.
+pub const BLACK_EV: f32 = 14.0;
+/// Log₂ of the luminance (cd/m²) of a star's disc: whatever is as bright is no highlight that others are black beside.
+pub const DISC_LOG2: f32 = 22.0;
 /// Rates of adaptation to brighter and to darker light, 1/s.
 pub const ADAPT_PER_S: [f32; 2] = [3.0, 1.5];
 /// EV100 that a meter which sees nothing gives: a starry night.
@@ -52,14 +56,22 @@ pub fn bin_of_luminance(luminance_cd_m2: f32) -> usize {
 
 /// EV100 metered from a histogram of [`BINS`] bins (missing bins count as empty), before compensation.
 pub fn ev100_of_histogram(bins: &[u32]) -> f32 {
-    let lit = || bins.iter().copied().enumerate().take(BINS).skip(1);
+    let log2_of = |i: usize| LOG2_MIN + (i as f32 - 0.5) / (BINS - 1) as f32 * (LOG2_MAX - LOG2_MIN);
+    let all = || bins.iter().copied().enumerate().take(BINS).skip(1);
+    let below: f32 = all().filter(|(i, _)| log2_of(*i) < DISC_LOG2).map(|(_, n)| n as f32).sum();
+    let (mut count, mut black) = (0.0, LOG2_MIN);
+    for (i, n) in all() {
+        black = if count < below * HIGHLIGHT[0] { log2_of(i) - BLACK_EV } else { black };
+        count += n as f32;
+    }
+    let lit = || all().filter(|(i, _)| log2_of(*i) >= black);
     let total: f32 = lit().map(|(_, n)| n as f32).sum();
     let (low, high) = (total * METER_RANGE[0], total * METER_RANGE[1]);
     let (mut before, mut weight, mut sum, mut bright) = (0.0_f32, 0.0_f32, 0.0_f32, LOG2_MIN);
     for (i, n) in lit() {
         let after = before + n as f32;
         let inside = (after.min(high) - before.max(low)).max(0.0);
-        let log2 = LOG2_MIN + (i as f32 - 0.5) / (BINS - 1) as f32 * (LOG2_MAX - LOG2_MIN);
+        let log2 = log2_of(i);
         sum += inside * log2;
         weight += inside;
         bright = if before < total * HIGHLIGHT[0] { log2 } else { bright };
@@ -100,12 +112,16 @@ mod tests {
             let held = ev100_of_luminance(5.0 * luminance) - HIGHLIGHT[1] + dimness_ev(luminance);
             assert!((ev100_of_histogram(&bins) - held).abs() < 0.2, "{luminance}");
             bins[bin_of_luminance(5.0 * luminance)] = 0;
-            bins[bin_of_luminance(1e5 * luminance)] = 30;
+            bins[bin_of_luminance(1e9)] = 30;
             assert!((ev100_of_histogram(&bins) - wanted - HIGHLIGHT_COST_EV).abs() < 0.2, "{luminance}");
-            bins[bin_of_luminance(1e5 * luminance)] = 0;
+            bins[bin_of_luminance(1e9)] = 0;
             bins[bin_of_luminance(64.0 * luminance)] = 10;
             assert!((ev100_of_histogram(&bins) - wanted).abs() < 0.11, "{luminance}");
         }
+        // Behind a bright crescent the night side is black.
+        let mut crescent = vec![0; BINS];
+        (crescent[bin_of_luminance(1e-3)], crescent[bin_of_luminance(4000.0)]) = (1000, 100);
+        assert!((ev100_of_histogram(&crescent) - ev100_of_luminance(4000.0) + BRIGHT_HALF_EV).abs() < 0.11);
         assert_eq!(ev100_of_histogram(&[0; BINS]), EV100_DARK);
         assert_eq!([f32::NAN, -1.0, 0.0, 1e-9].map(bin_of_luminance), [0; 4]);
         assert_eq!(bin_of_luminance(f32::INFINITY), BINS - 1);

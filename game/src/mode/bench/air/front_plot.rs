@@ -106,7 +106,7 @@ fn picture(path: &Path, title: &str, rows: &[Row], of: &dyn Fn(&Row) -> Summary)
     }
     chart
         .configure_series_labels()
-        .position(SeriesLabelPosition::LowerLeft)
+        .position(SeriesLabelPosition::UpperRight)
         .background_style(WHITE.mix(0.85))
         .border_style(RGBColor(200, 200, 200))
         .label_font(("sans-serif", 16))
