@@ -295,6 +295,12 @@ fn the_sea_mirrors_the_sky_of_view_table() {
     let (size, fov_deg) = ((64, 64), 16.0);
     let taken = stage.take("mirror", Some(NOON), "at:earth,30,-40,3,sun+150,0,16", size, Force::default());
     stage.worlds.remove("mirror");
+    // What this model said of the ground's light is forgotten with it.
+    let camera = "at:earth,42.36,-3.62,200,60,-5,55";
+    let after = stage.take("leo", Some(NOON), camera, (64, 64), Force::default());
+    stage.take("leo", Some(NOON), camera, (64, 64), Force { all: true });
+    let fresh = stage.take("leo", Some(NOON), camera, (64, 64), Force::default());
+    assert!(after.hdr == fresh.hdr, "the light of the model before is left on the ground");
     let row = |y: usize| (0..64).map(|x| f64::from(taken.rgb(x, y)[1])).sum::<f64>() / 64.0;
     for k in [8, 12, 16, 20] {
         let rise = (f64::from(k) + 0.5) / 64.0 * fov_deg;
@@ -345,5 +351,5 @@ fn what_the_ground_skips_changes_nothing() {
     }
     let rms = (squares / plain.hdr.rgba.len() as f64).sqrt();
     println!("the air at half rate: {rms:.2e} rms, {worst:.2e} at worst");
-    assert!(worst < 0.02 && rms < 2e-3, "forced passes changed the light: {rms} rms, {worst} at worst");
+    assert!(worst < 0.015 && rms < 1.7e-3, "forced passes changed the light: {rms} rms, {worst} at worst");
 }

@@ -55,6 +55,8 @@ struct Slot {
     medium: Medium,
     spread: Spread,
     bands: Option<InBands>,
+    /// The air's model puts what it says of the ground's light over these tables (`sky_daylight`).
+    overlaid: bool,
     used: u64,
     baked: bool,
 }
@@ -176,16 +178,27 @@ impl AirBaker {
             let [one, other] = [0, 1].map(|k| self.slot_of(id, Part::Band(k), &bands.media[k]));
             Some(InBands { to_rgb: bands.to_rgb, slots: [one?, other?] })
         });
-        if let Some(slot) = self.slots.get_mut(own as usize).filter(|s| s.bands != bands) {
-            slot.bands = bands;
-            slot.baked = false;
+        let overlaid = matches!(air.model, Model::ViewTable(_));
+        if let Some(slot) = self.slots.get_mut(own as usize) {
+            // What another model laid over them is not taken for what was baked.
+            slot.baked &= slot.bands == bands && slot.overlaid == overlaid;
+            (slot.bands, slot.overlaid) = (bands, overlaid);
         }
         Some(own)
     }
 
     #[allow(clippy::cast_possible_truncation)]
     fn slot_of(&mut self, id: u16, part: Part, medium: &Medium) -> Option<u32> {
-        let fresh = || Slot { id, part, medium: medium.clone(), spread: Spread::new(medium), bands: None, used: self.clock, baked: false };
+        let fresh = || Slot {
+            id,
+            part,
+            medium: medium.clone(),
+            spread: Spread::new(medium),
+            bands: None,
+            overlaid: false,
+            used: self.clock,
+            baked: false,
+        };
         let at = match self.slots.iter().position(|s| s.id == id && s.part == part) {
             Some(i) => i,
             None if self.slots.len() < MAX_AIRS => {

@@ -4,12 +4,12 @@ use crate::gpu::buffer::Uniform;
 use crate::gpu::{Gpu, ShaderLibrary};
 use crate::render::RenderError;
 use crate::render::pass::sun_disc;
-use crate::render::pipeline::{compute_pipeline, texture_entry, uniform_entry};
+use crate::render::pipeline::{compute_pipeline, texture_entry, uniform_entry, written_entry};
 use crate::render::shared::{FrameContext, Shared};
 use crate::scene::gpu_data::MeterUniform;
 use crate::scene::{AutoOr, Snapshot};
 use glam::Vec3;
-use wgpu::{BindGroupEntry, BufferUsages, ShaderStages};
+use wgpu::{BindGroupEntry, BufferUsages};
 
 /// Bins of the histogram.
 const BINS: u64 = 256;
@@ -37,19 +37,9 @@ impl Exposure {
     /// Compiles it.
     pub fn new(gpu: &Gpu, shaders: &ShaderLibrary, shared: &Shared) -> Result<Self, RenderError> {
         let module = shaders.load(&gpu.device, "pass/exposure.wgsl")?;
-        let storage = |binding| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility: ShaderStages::COMPUTE,
-            ty: wgpu::BindingType::Buffer {
-                ty: wgpu::BufferBindingType::Storage { read_only: false },
-                has_dynamic_offset: false,
-                min_binding_size: None,
-            },
-            count: None,
-        };
         let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("exposure"),
-            entries: &[texture_entry(0, wgpu::TextureViewDimension::D2), storage(1), storage(2), uniform_entry(3)],
+            entries: &[texture_entry(0, wgpu::TextureViewDimension::D2), written_entry(1), written_entry(2), uniform_entry(3)],
         });
         let groups = [&shared.frame_layout, &layout];
         Ok(Self {

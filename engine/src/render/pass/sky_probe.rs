@@ -6,7 +6,7 @@ use super::sky::{Painter, Parts, STEPS, painter, picture_layout};
 use crate::air::Air;
 use crate::gpu::{Gpu, ShaderLibrary, readback};
 use crate::render::RenderError;
-use crate::render::pipeline::{compute_pipeline, storage_entry};
+use crate::render::pipeline::{compute_pipeline, storage_entry, written_entry};
 use crate::render::shared::{Mirror, ShadowMap, Shared};
 use crate::scene::gpu_data::{BodiesUniform, BodyUniform, FrameUniform, Layers, MAX_OCCLUDERS, SKY_SINGLE, SkyUniform, vec4};
 use crate::scene::{Body, Occluder, SecondLight, Surface};
@@ -94,19 +94,9 @@ impl Prober {
         gpu.submit(encoder);
 
         let light = shared.light_group(gpu, &tables, &tables.media, &Mirror::none(gpu), &ShadowMap::none(gpu));
-        let found_entry = wgpu::BindGroupLayoutEntry {
-            binding: 4,
-            visibility: wgpu::ShaderStages::COMPUTE,
-            ty: wgpu::BindingType::Buffer {
-                ty: wgpu::BufferBindingType::Storage { read_only: false },
-                has_dynamic_offset: false,
-                min_binding_size: None,
-            },
-            count: None,
-        };
         let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("group 2: rays"),
-            entries: &[storage_entry(2), storage_entry(3), found_entry],
+            entries: &[storage_entry(2), storage_entry(3), written_entry(4)],
         });
         let kind = painter.kind();
         let module = shaders.load(&gpu.device, kind.file)?;

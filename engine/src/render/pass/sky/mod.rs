@@ -254,7 +254,8 @@ impl Sky {
         let mut pass = f.compute("sky_daylight");
         for (choice, painter) in self.by_own_light(scene) {
             let Some(slot) = slots.get(choice.body as usize).copied().flatten() else { continue };
-            let [sun, sky] = tables.map(|t| t.layer_view(slot));
+            // Transmittance has two layers a slot; the beam's, the second, is for models that march.
+            let [sun, sky] = [tables[0].layer_view(2 * slot), tables[1].layer_view(slot)];
             painter.light_ground(gpu, &mut pass, choice.id, [&sun, &sky]);
         }
     }
