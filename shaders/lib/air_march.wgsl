@@ -62,7 +62,7 @@ fn air_panels(air: Air, media: texture_2d_array<f32>, slot: i32, along: AirRay, 
     let extinction = air_extinction(air, media, slot, min(low, high));
     let depth = max(max(extinction.x, extinction.y), extinction.z) * (end - begin);
     // Points for the optical depth that can be seen through, and for a sun that sinks on the way, on top of those for the shape of the path.
-    let more = clamp(0.125 * depth - 1.0, 0.0, 3.0) + min(3.0 * redder / air.shape.y, 2.0);
+    let more = clamp(0.125 * depth - 1.0, 0.0, 3.0) + min(8.0 * redder / air.shape.y, 4.0);
     return u32(clamp(ceil(max(depth, max(40.0 * abs(high - low), 20.0 * redder) / air.shape.y)), 1.0, ceil(f32(most) + more)));
 }
 

@@ -87,7 +87,7 @@ fn published_rays_of_all_orders() {
     errors.hold("ground 85", 0.30, 0.69);
     errors.hold("ground 90", 1.01, 1.42);
     errors.hold("ground 94", 0.48, 0.65);
-    errors.hold("space 85", 0.28, 0.77);
+    errors.hold("space 85", 0.19, 0.39);
     errors.hold("thin", 0.06, 0.12);
     errors.hold("thick", 0.72, 1.76);
 }
@@ -117,7 +117,7 @@ fn rays_through_other_planets_of_all_orders() {
     errors.hold("earth air dusk", 0.42, 1.55);
     errors.hold("earth air night", 1.22, 2.94);
     errors.hold("earth space day", 0.24, 0.71);
-    errors.hold("earth space dusk", 0.18, 0.53);
+    errors.hold("earth space dusk", 0.13, 0.24);
     errors.hold("thick", 0.93, 3.92);
     errors.hold("hazy", 0.8, 5.07);
     errors.hold("dusty", 1.35, 5.88);
