@@ -30,7 +30,7 @@ struct Air {
     jumps_low: vec4<f32>,       // altitudes where density jumps; −1e9: none
     jumps_high: vec4<f32>,
     orders: vec4<f32>,          // how the sun's height is mapped in the table of further orders: SunMap of engine/src/air/model/orders.rs
-    bands: array<vec4<f32>, 6>, // columns of the matrices to linear sRGB of the two media that draw it; w of a first: that medium's slot; w of [1]: how many of the two
+    bands: array<vec4<f32>, 6>, // columns of the matrices to linear sRGB of the one or two media that draw it; w of a first: that medium's slot; w of [1]: how many
     rings: array<vec4<f32>, 16>, // from how far scattered light comes: engine/src/air/model/spread.rs. Weights at the datum (w: radius), their rise with altitude, both more under a high sun
     forward: vec4<f32>,         // of what each class scatters, the share that goes straight on: engine/src/air/model/forward.rs
     cap: vec4<f32>,             // value at which its peak is then cut off, sr⁻¹

@@ -1,4 +1,4 @@
-// What an air that is drawn in bands does to surfaces, in linear sRGB: the tables of its two band media, mixed into its own. Further
+// What an air that is drawn in bands does to surfaces, in linear sRGB: the tables of its one or two band media, mixed into its own. Further
 // orders stay apart: they are mixed with the rest along a ray (pass/sky_physical.wgsl). Rust side: engine/src/render/pass/air_bands.rs.
 
 #include "lib/air.wgsl"

@@ -123,14 +123,14 @@ impl AirUniform {
         self
     }
 
-    /// Drawn by the two media in these slots.
+    /// Drawn by the one or two media in these slots, each with its matrix to linear sRGB.
     #[must_use]
-    pub fn in_bands(mut self, to_rgb: &[DMat3; 2], slots: [u32; 2]) -> Self {
-        for (k, m) in to_rgb.iter().enumerate() {
-            (0..3).for_each(|c| self.bands[3 * k + c] = vec4(narrow3(m.col(c)), 0.0));
-            self.bands[3 * k][3] = slots[k] as f32;
+    pub fn in_bands(mut self, bands: &[(u32, DMat3)]) -> Self {
+        for (k, (slot, to_rgb)) in bands.iter().take(2).enumerate() {
+            (0..3).for_each(|c| self.bands[3 * k + c] = vec4(narrow3(to_rgb.col(c)), 0.0));
+            self.bands[3 * k][3] = *slot as f32;
         }
-        self.bands[1][3] = 2.0;
+        self.bands[1][3] = bands.len() as f32;
         self
     }
 

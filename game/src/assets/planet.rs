@@ -114,6 +114,8 @@ fn put(air: &mut Node, key: &str, data: Data) {
 /// The air at the star's wavelengths: three numbers of a file that names no wavelengths are those of the star, in its order.
 fn at_star(spec: AirSpec, star: &Star, named: bool, r: &Reader<'_>) -> Option<Air> {
     let (mut air, by_wavelength) = (spec.look?, spec.by_wavelength?);
+    // Rays are asked by wavelength, not by colour.
+    air.bands = None;
     if !by_wavelength.is_channels() || named {
         if !named {
             r.wrong(

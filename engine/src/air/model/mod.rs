@@ -56,7 +56,7 @@ impl Default for Model {
 pub struct Air {
     /// The optical layers. A stylised model may have none: then nothing reddens the sun and no sky lights the ground.
     pub medium: Medium,
-    /// The same in six bands, where [`Model::Physical`] is to draw it by those; everything else draws by `medium`.
+    /// The same in three or six bands, by which [`Model::Physical`] is to draw it; everything else draws by `medium`.
     pub bands: Option<Box<Bands>>,
     /// What of it bends light into the planet's shadow.
     pub gases: Vec<Refractive>,

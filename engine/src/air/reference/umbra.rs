@@ -52,7 +52,7 @@ pub struct Traced {
 pub fn trace(air: &Air, distance_m: f64, angle_rad: f64, steps: u32) -> Option<Traced> {
     let medium = &air.medium;
     let (bottom, top) = (medium.bottom_radius_m, medium.bottom_radius_m + medium.top_altitude_m);
-    let media: Vec<&Medium> = air.bands.as_ref().map_or_else(|| vec![medium], |b| b.media.iter().collect());
+    let media: Vec<&Medium> = air.bands.as_ref().map_or_else(|| vec![medium], |b| b.list.iter().map(|band| &band.medium).collect());
     let index = |h: f64| 1.0 + air.gases.iter().map(|g| g.refractivity * g.profile.density(h)).sum::<f64>();
     let (sin, cos) = libm::sincos(angle_rad);
     let direction = DVec2::new(cos, sin);
@@ -90,9 +90,9 @@ pub fn trace(air: &Air, distance_m: f64, angle_rad: f64, steps: u32) -> Option<T
         }
         if at.length() > top && at.dot(moving) > 0.0 {
             let through = |d: &DVec3| DVec3::new(libm::exp(-d.x), libm::exp(-d.y), libm::exp(-d.z));
-            let transmittance = match (&air.bands, depths.as_slice()) {
-                (Some(bands), [one, other]) => bands.mix([through(one), through(other)]),
-                (_, own) => own.first().map_or(DVec3::ONE, through),
+            let transmittance = match &air.bands {
+                Some(bands) => bands.mix(|k, _| through(&depths[k])),
+                None => through(&depths[0]),
             };
             return Some(Traced { at_m: at, direction: moving.normalize_or(direction), transmittance });
         }

@@ -87,7 +87,7 @@ fn through(air: &Air, columns: &[f64]) -> DVec3 {
     };
     match (&air.by_wavelength, &air.bands) {
         (Some(all), _) => all.through(columns),
-        (None, Some(bands)) => bands.mix([of(&bands.media[0]), of(&bands.media[1])]),
+        (None, Some(bands)) => bands.mix(|_, band| of(&band.medium)),
         (None, None) => of(&air.medium),
     }
 }

@@ -2,9 +2,9 @@
 //!
 //! A [`SpectralMedium`] knows its coefficients at every wavelength: from molecules and dust ([`super::optics`]), from a table, or, where a
 //! file gives three numbers, by a power law through them. A frame cannot integrate 216 wavelengths; it draws
-//! - `spectrum = "rgb"`: each linear sRGB channel by one wavelength, the best for this air under this star ([`rgb`]);
-//! - `spectrum = "spectral"`: six wavelengths, in two media of three channels each, and a matrix from the six to linear sRGB,
-//!   fitted once to the integral over all wavelengths ([`Bands`]).
+//! - `spectrum = "rgb"`: three wavelengths, the best for this air under this star, and a matrix from those to linear sRGB, fitted
+//!   once to the integral over all wavelengths ([`Bands::three`]); or three numbers as a file gives them, for red, green and blue;
+//! - `spectrum = "spectral"`: six wavelengths, in two media of three channels each ([`Bands::six`]).
 //!
 //! [`rays`] gives the integral itself; [`study`] tells how far each way is from it, in ΔE2000. Not here: light in several scatterings,
 //! which is linear in the bands like the first one; what the GPU makes of the bands.
@@ -77,7 +77,8 @@ impl SpectralMedium {
     /// Where numbers in threes hold unless a file says otherwise, m.
     pub const WAVELENGTHS_M: [f64; 3] = [680.0 * NM, 550.0 * NM, 440.0 * NM];
 
-    /// How it is drawn under a star: the medium of three channels, and its six bands where `spectral`; or everything that is out of range.
+    /// How it is drawn under a star: the medium of three channels, and its bands: six where `spectral`, else three, or none where a file gives
+    /// the channels themselves; or everything that is out of range.
     pub fn draw(&self, spectral: bool, star: &Starlight) -> Result<(Medium, Option<Box<Bands>>), Vec<RangeError>> {
         let mut errors = self.validate();
         errors.extend(self.medium_at(self.wavelengths_m).validate());
@@ -87,7 +88,11 @@ impl SpectralMedium {
         let mut sound = self.clone();
         sound.layers.iter_mut().for_each(|l| l.phase = l.phase.normalised());
         let star = star.spectrum();
-        Ok((rgb(&sound, &star), spectral.then(|| Box::new(Bands::new(&sound, &star)))))
+        let bands = match spectral {
+            true => Some(Bands::six(&sound, &star)),
+            false => (!sound.is_channels()).then(|| Bands::three(&sound, &star)),
+        };
+        Ok((rgb(&sound, &star), bands.map(Box::new)))
     }
 
     /// Everything out of range that is not [`Medium::validate`]'s.

@@ -12,6 +12,7 @@ use super::air_orders::{Inputs, OrdersBaker};
 use super::sky::choose::without_tables;
 use crate::air::model::orders::Plan;
 use crate::air::model::spread::Spread;
+use crate::air::spectral::bands::Band;
 use crate::air::{Air, Classes, Medium, Model};
 use crate::gpu::buffer::Uniform;
 use crate::gpu::texture::{Texture, linear_sampler};
@@ -41,12 +42,8 @@ enum Part {
     Bare,
 }
 
-/// How an air is mixed of its bands.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct InBands {
-    to_rgb: [DMat3; 2],
-    slots: [u32; 2],
-}
+/// How an air is mixed of its bands: the slot of each, and its matrix to linear sRGB.
+type InBands = Vec<(u32, DMat3)>;
 
 /// Whose air a slot holds.
 struct Slot {
@@ -174,9 +171,9 @@ impl AirBaker {
     /// The slot of an air, and those of its bands; where there is no room for these it is drawn without.
     fn slots_of(&mut self, id: u16, air: &Air) -> Option<u32> {
         let own = self.slot_of(id, Part::Own, &air.medium)?;
-        let bands = air.bands.as_ref().and_then(|bands| {
-            let [one, other] = [0, 1].map(|k| self.slot_of(id, Part::Band(k), &bands.media[k]));
-            Some(InBands { to_rgb: bands.to_rgb, slots: [one?, other?] })
+        let bands: Option<InBands> = air.bands.as_ref().and_then(|bands| {
+            let slot = |(k, band): (usize, &Band)| Some((self.slot_of(id, Part::Band(k), &band.medium)?, band.to_rgb));
+            bands.list.iter().enumerate().map(slot).collect()
         });
         let overlaid = matches!(air.model, Model::ViewTable(_));
         if let Some(slot) = self.slots.get_mut(own as usize) {
@@ -256,8 +253,8 @@ impl AirBaker {
         let mut all = AirsUniform::zeroed();
         for ((air, slot), i) in all.list.iter_mut().zip(&self.slots).zip(0..) {
             *air = AirUniform::new(&slot.medium, &Classes::of(&slot.medium)).with_rings(&slot.spread).in_slot(i);
-            if let Some(bands) = slot.bands {
-                *air = air.in_bands(&bands.to_rgb, bands.slots);
+            if let Some(bands) = &slot.bands {
+                *air = air.in_bands(bands);
             }
         }
         self.airs.write(&gpu.queue, &all);
@@ -282,7 +279,8 @@ impl AirBaker {
     }
 
     fn bake_slot(&self, gpu: &Gpu, pass: &mut wgpu::ComputePass<'_>, slot: u32) {
-        let Some(held) = self.slots.get(slot as usize).filter(|s| s.part != Part::Bare) else { return };
+        // Those of an air in bands are mixed from theirs.
+        let Some(held) = self.slots.get(slot as usize).filter(|s| s.part != Part::Bare && s.bands.is_none()) else { return };
         let transmittance = layers_of(&self.transmittance, 2 * slot, 2, TextureViewDimension::D2Array);
         let media = layers_of(&self.media, slot, 1, TextureViewDimension::D2Array);
         let air = self.air_in(slot);
@@ -306,16 +304,18 @@ impl AirBaker {
 
     /// Mixes the tables of an air that is drawn in bands from theirs.
     fn mix_slot(&self, gpu: &Gpu, pass: &mut wgpu::ComputePass<'_>, slot: u32) {
-        let Some(InBands { slots: [one, other], .. }) = self.slots.get(slot as usize).and_then(|s| s.bands) else { return };
+        let bands = self.slots.get(slot as usize).and_then(|s| s.bands.as_deref()).unwrap_or_default();
+        // The second of one counts for nothing: its matrix is zero.
+        let (Some((one, _)), Some((other, _))) = (bands.first(), bands.last()) else { return };
         let read = |table, layer| layers_of(table, layer, 1, TextureViewDimension::D2Array);
         let written = |table, layer| layers_of(table, layer, 1, TextureViewDimension::D2);
         let tables = Tables {
             own: [written(&self.transmittance, 2 * slot), written(&self.irradiance, slot)],
             bands: [
-                read(&self.transmittance, 2 * one),
-                read(&self.transmittance, 2 * other),
-                read(&self.irradiance, one),
-                read(&self.irradiance, other),
+                read(&self.transmittance, 2 * *one),
+                read(&self.transmittance, 2 * *other),
+                read(&self.irradiance, *one),
+                read(&self.irradiance, *other),
             ],
         };
         self.mixer.mix(gpu, pass, self.air_in(slot), &tables, TRANSMITTANCE_SIZE);

@@ -58,7 +58,7 @@ pub fn needed(model: &str) -> &'static [&'static str] {
 
 /// Where the three channels come from.
 const SPECTRA: &[(&str, &str)] = &[
-    ("rgb", "physical inputs at one wavelength for each channel"),
+    ("rgb", "physical inputs at three wavelengths, mixed to the channels"),
     ("spectral", "physical inputs at every wavelength, seen through the eye's response"),
 ];
 

@@ -19,6 +19,8 @@ pub struct ColourRow {
     pub count: usize,
     /// 680, 550, 440 nm.
     pub plain: ColourError,
+    /// The best wavelength for each channel, as the older models draw it.
+    pub best: ColourError,
     /// `spectrum = "rgb"`.
     pub rgb: ColourError,
     /// `spectrum = "spectral"`.
@@ -48,12 +50,13 @@ pub fn rows(assets: &Assets, bodies: &[String]) -> Result<Vec<ColourRow>, AssetE
     for body in all {
         let Some(medium) = assets.air(&body, &star)?.by_wavelength.filter(|m| !m.layers.is_empty()) else { continue };
         rows.extend(study(&medium, &star.spectrum()).into_iter().map(|row| {
-            let [plain, rgb, spectral] = row.errors;
+            let [plain, best, rgb, spectral] = row.errors;
             ColourRow {
                 body: body.clone(),
                 rays: row.kind,
                 count: plain.rays,
                 plain: plain.into(),
+                best: best.into(),
                 rgb: rgb.into(),
                 spectral: spectral.into(),
             }
