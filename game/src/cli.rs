@@ -5,13 +5,14 @@
 
 mod bench;
 mod eclipses;
+mod places;
 mod sky;
 
 pub use bench::{BenchAirArgs, BenchEphemerisArgs, BenchKeplerArgs, BenchOrbitArgs, BenchShipsArgs};
 pub use eclipses::ProbeEclipsesArgs;
 pub use sky::ProbeSkyArgs;
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, CommandFactory, Parser, Subcommand};
 use engine::time::SimTime;
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -22,7 +23,7 @@ pub const DEFAULT_START: &str = "eclipse";
 
 /// A space simulator at real scale: fly from orbit to the surface of any world, and stand under the Moon's shadow.
 #[derive(Debug, Parser)]
-#[command(name = "syzygy", version, args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
+#[command(name = "syzygy", version, subcommand_negates_reqs = true)]
 #[command(after_help = "Examples:\n  syzygy                          open the game\n  syzygy play --start eclipse     \
     fly the eclipse of 2026-08-12\n  syzygy replay tests/replays/*.syzlog\n\nExit codes: 0 done, 1 error, 2 usage or no GPU, 3 a replay diverged")]
 pub struct Cli {
@@ -394,11 +395,24 @@ pub struct ProbePropagateArgs {
 /// # Errors
 /// The exit code: 0 after help or version, 2 after wrong usage.
 pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Cli, ExitCode> {
-    Cli::try_parse_from(args).map_err(|e| {
+    Cli::try_parse_from(args).and_then(led).map_err(|e| {
         // Nothing is left to tell where the terminal is gone.
         let _ = e.print();
         if e.use_stderr() { ExitCode::from(2) } else { ExitCode::SUCCESS }
     })
+}
+
+/// With what was written before the subcommand: folders are the subcommand's own, anything else is told where it belongs.
+fn led(mut cli: Cli) -> Result<Cli, clap::Error> {
+    if let Some(mode) = &mut cli.mode {
+        let play = std::mem::take(&mut cli.play);
+        if let Some(option) = play.beside_places() {
+            let message = format!("`{option}` before a command is of no use to it: write it behind, as in `syzygy COMMAND {option} …`\n");
+            return Err(Cli::command().error(clap::error::ErrorKind::ArgumentConflict, message));
+        }
+        mode.places_mut().lead(play.places);
+    }
+    Ok(cli)
 }
 
 /// `1280x720` → (1280, 720).

@@ -8,6 +8,9 @@
 #include "lib/air.wgsl"
 #include "lib/refracted.wgsl"
 
+// By all stars and what glows in the air of the Earth, on horizontal ground.
+const STARLIGHT_LX: f32 = 1e-3;
+
 struct Daylight {
     sun: vec3<f32>,  // face-on: horizon, eclipses, reddening by air
     sky: vec3<f32>,  // on horizontal ground

@@ -8,7 +8,7 @@ fn physical_light(
     body: Body, air: Air, media: texture_2d_array<f32>, transmittance: texture_2d_array<f32>, orders: texture_3d<f32>, linear: sampler,
     star: vec4<f32>, sky: Sky, view: SkyView,
 ) -> AirLight {
-    let path = air_path(air, body.up.xyz, body.up.w, view.ray);
+    let path = sky_path(body, air, view);
     let end = sky_end(air, path, view);
     // A line of no width that begins on the datum or under it and falls meets ground at once; a picture that drew none there looks on.
     let grounded = view.pixel <= 0.0 && view.datum && path.altitude <= 0.0 && path.slope < 0.0;

@@ -9,9 +9,10 @@
 
 const SKY_SETTINGS: u32 = 8u;
 const SKY_SINGLE: u32 = 1u;  // flag: orders beyond the first are left out (probes only)
+const SKY_HELD: u32 = 2u;    // flag: it lies in another's air
 
 struct Sky {
-    ids: vec4<u32>,                              // index of the body; steps of a long march; flags; of a front: index of the bank
+    ids: vec4<u32>,                              // index of the body; steps of a long march; flags; of a front: index of the bank; with SKY_HELD: of the body whose air it is
     settings: array<vec4<f32>, SKY_SETTINGS>,    // the model's numbers, in its own order
 }
 
@@ -74,6 +75,17 @@ fn sky_across(body: Body, view: SkyView, k: u32, rays: u32) -> SkyView {
     let ray = normalize(view.ray + outwards * (aside / max(length(outwards), 1e-20)));
     // What was drawn in the pixel's middle is not what its other parts show: the datum decides, as long as the air lies before it.
     return SkyView(ray, view.surface, true, view.pixel);
+}
+
+// The path of a ray of sight. Between the datum's horizon and that of ground which lies deeper, a picture from within the air has drawn nothing:
+// there the datum ends no ray.
+fn sky_path(body: Body, air: Air, view: SkyView) -> AirPath {
+    var path = air_path(air, body.up.xyz, body.up.w, view.ray);
+    let relief = body.ids.w != 0 && view.pixel > 0.0 && path.start == 0.0 && path.ground >= 0.0;
+    if relief && air_altitude(air, path, -path.slope) > -AIR_FLOOR_M {
+        path.ground = -1.0;
+    }
+    return path;
 }
 
 // Where the ray ends, from the path's start; nothing to see where it is not positive. What is drawn by more than a pixel above the datum is

@@ -9,11 +9,16 @@
 const FOREVER: f32 = 1e30;
 const MAX_SHADOWS: u32 = 9u;  // MAX_OCCLUDERS and the planet itself
 
-fn thickness_light(body: Body, air: Air, star: vec4<f32>, sky: Sky, view: SkyView) -> AirLight {
-    var path = air_path(air, body.up.xyz, body.up.w, view.ray);
+fn thickness_path(body: Body, air: Air, sky: Sky, view: SkyView) -> AirPath {
+    var path = sky_path(body, air, view);
     if sky.settings[1].w > 0.5 {
         path.ground = -1.0;
     }
+    return path;
+}
+
+fn thickness_light(body: Body, air: Air, star: vec4<f32>, sky: Sky, view: SkyView) -> AirLight {
+    let path = thickness_path(body, air, sky, view);
     let end = sky_end(air, path, view);
     if end <= 0.0 {
         return AirLight(vec3<f32>(0.0), vec3<f32>(1.0));

@@ -21,6 +21,8 @@ const BRIGHT_HALF_EV: f32 = 0.6;
 const HIGHLIGHT_COST_EV: f32 = 1.3;
 const BLACK_EV: f32 = 14.0;
 const DISC_LOG2: f32 = 22.0;
+const MOONLIT: vec3<f32> = vec3<f32>(0.02, 2.2, 0.3);
+const BRIGHT: vec3<f32> = vec3<f32>(4096.0, 0.5, 1.0);
 
 var<workgroup> local_bins: array<atomic<u32>, 256>;
 
@@ -44,10 +46,14 @@ fn count_pixels(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_inv
     }
 }
 
-// Stops by which a scene of this luminance is left darker than middle grey. Twin of engine::light::exposure::dimness_ev.
+// Stops by which a scene of this luminance is left darker than middle grey, and brighter. Twins of those of engine::light::exposure.
 fn dimness_ev(luminance_cd_m2: f32) -> f32 {
     let key = 1.03 - 2.0 / (2.0 + log2(luminance_cd_m2 + 1.0) / log2(10.0));
-    return max(log2(0.6769 / key), 0.0);
+    let night = MOONLIT.y - MOONLIT.z * (log2(max(luminance_cd_m2, 1e-9) / MOONLIT.x) / log2(10.0));
+    return max(min(log2(0.6769 / key), night), 0.0);
+}
+fn brightness_ev(luminance_cd_m2: f32) -> f32 {
+    return clamp(BRIGHT.y * log2(max(luminance_cd_m2, 1e-9) / BRIGHT.x), 0.0, BRIGHT.z);
 }
 
 fn log2_of_bin(i: u32) -> f32 {
@@ -91,9 +97,10 @@ fn settle() {
     // EV100 = log2(L · 100 / 12.5); a picture with nothing in it is exposed for the darkest.
     var ev = meter.limit.x;
     if weight > 0.0 {
+        let average = exp2(sum / weight);
         let usual = sum / weight - BRIGHT_HALF_EV;
         let middle = max(usual, min(bright - meter.range.w, usual + HIGHLIGHT_COST_EV));
-        ev = clamp(middle + 3.0 + dimness_ev(exp2(sum / weight)), meter.limit.x, meter.limit.y);
+        ev = clamp(middle + 3.0 + dimness_ev(average) - brightness_ev(average), meter.limit.x, meter.limit.y);
     }
     ev = max(ev, meter.limit.z);
     if exposure.settled > 0.5 && frame.forward.w >= 0.0 {

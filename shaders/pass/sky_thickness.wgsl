@@ -2,12 +2,40 @@
 
 #include "pass/sky.wgsl"
 #include "lib/thickness.wgsl"
+#include "lib/daylight.wgsl"
+#include "lib/second_light.wgsl"
 
+@group(1) @binding(3) var irradiance: texture_2d_array<f32>;
+@group(1) @binding(9) var refracted: texture_2d_array<f32>;
 @group(3) @binding(0) var front_radiance: texture_2d<f32>;
 @group(3) @binding(1) var front_transmittance: texture_2d<f32>;
 
 fn sky_light(body: Body, star: vec4<f32>, view: SkyView) -> AirLight {
-    return in_starlight(body, thickness_light(body, airs.list[u32(body.ids.z)], star, sky, view));
+    let air = airs.list[u32(body.ids.z)];
+    if (sky.ids.z & SKY_HELD) == 0u {
+        return in_starlight(body, thickness_light(body, air, star, sky, view));
+    }
+    let path = thickness_path(body, air, sky, view);
+    let end = sky_end(air, path, view);
+    if end <= 0.0 {
+        return AirLight(vec3<f32>(0.0), vec3<f32>(1.0));
+    }
+    let width = end * sky.settings[1].x;
+    let lit = light_in_air(bodies.list[sky.ids.w], star, view.ray * (path.start + 0.5 * end));
+    return AirLight(sky.settings[0].rgb * width * lit, vec3<f32>(exp(-sky.settings[1].y * width)));
+}
+
+// What lights a bank at a point of another's air, lx: the sun as that air lets it through, and its sky. Of a sky that is even over half of all
+// directions twice as much passes through a drop as falls on level ground; of the sun as much as falls on what faces it.
+fn light_in_air(holder: Body, star: vec4<f32>, point: vec3<f32>) -> vec3<f32> {
+    let air = airs.list[u32(max(holder.ids.z, 0))];
+    var sum = vec3<f32>(2.0 * STARLIGHT_LX);
+    for (var k = 0u; k < light_count(holder); k++) {
+        let by = in_light(holder, k);
+        let light = daylight(by, star, point, air, transmittance, irradiance, refracted, linear);
+        sum += by.illuminance.rgb * (light.sun + 2.0 * light.sky);
+    }
+    return sum;
 }
 
 // A bank of fog within another's air A. What is behind has all of A's light already; it belongs before the bank as far as it comes from there:

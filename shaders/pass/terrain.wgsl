@@ -34,7 +34,6 @@
 const STORED: u32 = 67u;
 const SIDE: u32 = 33u;
 const NEAR_M: f32 = 16.0;        // PAINT_M[0]
-const STARLIGHT_LX: f32 = 1e-3;
 const SEA_SLOPES: f32 = 0.034;  // mean square slope of the sea at 6 m/s [Cox & Munk 1954]: 0.003 + 0.00512 · 6
 
 struct Tile {

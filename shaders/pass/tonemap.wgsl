@@ -64,6 +64,50 @@ fn shown(c: vec3<f32>, gain: f32) -> f32 {
     return sqrt(y / (1.0 + y));
 }
 
+// Averages are taken of tone-mapped light, or a single bright pixel would win [Karis 2014].
+fn tone_mix(a: vec3<f32>, b: vec3<f32>, share: f32, gain: f32) -> vec3<f32> {
+    let wa = (1.0 - share) / (1.0 + luminance_of(a) * gain);
+    let wb = share / (1.0 + luminance_of(b) * gain);
+    return (a * wa + b * wb) / (wa + wb);
+}
+
+// How much a pixel takes of the one beside it, across an edge that is nearly level or upright and so goes in long steps: a horizon.
+struct Stepped {
+    beside: vec2<i32>,
+    share: f32,
+}
+// Looks along the edge for both ends of the step [Lottes 2009, "FXAA", edge search]: at a step's end the line passes half-way between two rows.
+fn stepped_edge(pixel: vec2<i32>, centre: f32, lumas: vec4<f32>, gain: f32) -> Stepped {
+    let level = abs(lumas.x + lumas.y - 2.0 * centre) >= abs(lumas.z + lumas.w - 2.0 * centre);
+    let two = select(lumas.zw, lumas.xy, level);
+    let before = abs(two.x - centre) >= abs(two.y - centre);
+    let other = select(two.y, two.x, before);
+    let across = select(vec2<i32>(1, 0), vec2<i32>(0, 1), level) * select(1, -1, before);
+    let along = select(vec2<i32>(0, 1), vec2<i32>(1, 0), level);
+    let mean = 0.5 * (centre + other);
+    let enough = 0.25 * abs(other - centre);
+    var ends = vec2<f32>(0.0);
+    var past = vec2<f32>(0.0);
+    for (var side = 0; side < 2; side++) {
+        var reach = 0;
+        var off = 0.0;
+        for (var k = 0; k < 16 && abs(off) < enough; k++) {
+            reach += 1 << u32(max(k - 4, 0) / 4);
+            let at = pixel + along * select(reach, -reach, side == 0);
+            off = 0.5 * (seen(at, gain) + seen(at + across, gain)) - mean;
+        }
+        ends[side] = f32(reach);
+        past[side] = off;
+    }
+    let nearest = select(past.y, past.x, ends.x < ends.y);
+    let own = (nearest < 0.0) != (centre < mean);
+    let share = 0.5 - min(ends.x, ends.y) / (ends.x + ends.y);
+    return Stepped(pixel + across, select(0.0, share, own));
+}
+fn seen(pixel: vec2<i32>, gain: f32) -> f32 {
+    return shown(textureLoad(lit, clamp(pixel, vec2<i32>(0), vec2<i32>(textureDimensions(lit)) - 1), 0).rgb, gain);
+}
+
 // Edges of solid things, smoothed along their direction [after Lottes 2009, "FXAA"]; stars and sky gradients are left alone.
 fn smoothed(pixel: vec2<i32>, gain: f32) -> vec3<f32> {
     let middle = textureLoad(lit, pixel, 0).rgb;
@@ -87,6 +131,11 @@ fn smoothed(pixel: vec2<i32>, gain: f32) -> vec3<f32> {
     if contrast < max(0.06, 0.15 * highest) {
         return middle;
     }
+    let lumas = vec4<f32>(north, south, west, east);
+    let stepped = stepped_edge(pixel, centre, lumas, gain);
+    if stepped.share > 0.0 {
+        return tone_mix(middle, textureLoad(lit, clamp(stepped.beside, vec2<i32>(0), last), 0).rgb, stepped.share, gain);
+    }
     // Along the edge: across the gradient.
     let gradient = vec2<f32>(east - west, south - north);
     let along = vec2<f32>(-gradient.y, gradient.x) / max(abs(gradient.x) + abs(gradient.y), 1e-4);
@@ -95,11 +144,7 @@ fn smoothed(pixel: vec2<i32>, gain: f32) -> vec3<f32> {
     let uv = (vec2<f32>(pixel) + 0.5) * texel;
     let a = textureSampleLevel(lit, linear, uv + along * texel * 0.75, 0.0).rgb;
     let b = textureSampleLevel(lit, linear, uv - along * texel * 0.75, 0.0).rgb;
-    // Averages are taken of tone-mapped light, or a single bright pixel would win [Karis 2014].
-    let wa = 1.0 / (1.0 + luminance_of(a) * gain);
-    let wb = 1.0 / (1.0 + luminance_of(b) * gain);
-    let wm = 1.0 / (1.0 + luminance_of(middle) * gain);
-    return (a * wa + b * wb + middle * wm) / (wa + wb + wm);
+    return tone_mix(middle, tone_mix(a, b, 0.5, gain), 2.0 / 3.0, gain);
 }
 
 @fragment

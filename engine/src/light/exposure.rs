@@ -24,6 +24,10 @@ pub const HIGHLIGHT_COST_EV: f32 = 1.3;
 pub const BLACK_EV: f32 = 14.0;
 /// Log₂ of the luminance (cd/m²) of a star's disc: whatever is as bright is no highlight that others are black beside.
 pub const DISC_LOG2: f32 = 22.0;
+/// Luminance of land under a full moon, cd/m²; stops by which it is left darker than middle grey; stops more for every decade less.
+pub const MOONLIT: [f32; 3] = [0.02, 2.2, 0.3];
+/// Luminance of sunlit ground, cd/m²; the part of what exceeds it that is left to be seen as such; stops of that at most.
+pub const BRIGHT: [f32; 3] = [4096.0, 0.5, 1.0];
 /// Rates of adaptation to brighter and to darker light, 1/s.
 pub const ADAPT_PER_S: [f32; 2] = [3.0, 1.5];
 /// EV100 that a meter which sees nothing gives: a starry night.
@@ -40,11 +44,19 @@ pub fn exposure_of_ev100(ev100: f32) -> f32 {
 }
 
 /// Stops by which a scene of this luminance is left darker than middle grey, so that dusk looks like dusk and totality like
-/// night: the key of a scene, `1.03 − 2/(2 + log₁₀(L + 1))` [Krawczyk, Myszkowski & Seidel 2005, eq. 11], against a sunlit one's.
+/// night: the key of a scene, `1.03 − 2/(2 + log₁₀(L + 1))` [Krawczyk, Myszkowski & Seidel 2005, eq. 11], against a sunlit one's. That key has
+/// no eyes for the night, where it falls by two stops within a decade and then no more: from there on ([`MOONLIT`]) every decade costs the same, so
+/// that ground under a full moon is seen, and that under stars alone less.
 pub fn dimness_ev(luminance_cd_m2: f32) -> f32 {
     const SUNLIT_KEY: f32 = 0.6769;
     let key = 1.03 - 2.0 / (2.0 + (luminance_cd_m2 + 1.0).log10());
-    (SUNLIT_KEY / key).log2().max(0.0)
+    let night = MOONLIT[1] - MOONLIT[2] * (luminance_cd_m2.max(1e-9) / MOONLIT[0]).log10();
+    (SUNLIT_KEY / key).log2().min(night).max(0.0)
+}
+
+/// Stops by which a scene of this luminance is left brighter than middle grey, so that snow in the sun is white and not grey.
+pub fn brightness_ev(luminance_cd_m2: f32) -> f32 {
+    (BRIGHT[1] * (luminance_cd_m2.max(1e-9) / BRIGHT[0]).log2()).clamp(0.0, BRIGHT[2])
 }
 
 /// Bin of a luminance in cd/m²; 0 for what is too dark, negative or NaN.
@@ -77,9 +89,10 @@ pub fn ev100_of_histogram(bins: &[u32]) -> f32 {
         bright = if before < total * HIGHLIGHT[0] { log2 } else { bright };
         before = after;
     }
+    let average = (sum / weight).exp2();
     let usual = sum / weight - BRIGHT_HALF_EV;
     let middle = usual.max((bright - HIGHLIGHT[1]).min(usual + HIGHLIGHT_COST_EV));
-    if weight > 0.0 { ev100_of_luminance(middle.exp2()) + dimness_ev((sum / weight).exp2()) } else { EV100_DARK }
+    if weight > 0.0 { ev100_of_luminance(middle.exp2()) + dimness_ev(average) - brightness_ev(average) } else { EV100_DARK }
 }
 
 /// EV100 after `dt_s` seconds of adaptation from `now` towards `goal`: exponential, quicker to bright light than to dark.
@@ -105,11 +118,12 @@ mod tests {
             let mut bins = vec![0; BINS];
             bins[bin_of_luminance(luminance)] = 1000;
             bins[0] = 1_000_000; // black sky does not vote
-            let wanted = ev100_of_luminance(luminance) - BRIGHT_HALF_EV + dimness_ev(luminance);
+            let key = dimness_ev(luminance) - brightness_ev(luminance);
+            let wanted = ev100_of_luminance(luminance) - BRIGHT_HALF_EV + key;
             assert!((ev100_of_histogram(&bins) - wanted).abs() < 0.11, "{luminance}");
             // A glow over three hundredths of the picture is held, one of the brightness of a star's disc at no more than its cost; over one hundredth it is not.
             bins[bin_of_luminance(5.0 * luminance)] = 30;
-            let held = ev100_of_luminance(5.0 * luminance) - HIGHLIGHT[1] + dimness_ev(luminance);
+            let held = ev100_of_luminance(5.0 * luminance) - HIGHLIGHT[1] + key;
             assert!((ev100_of_histogram(&bins) - held).abs() < 0.2, "{luminance}");
             bins[bin_of_luminance(5.0 * luminance)] = 0;
             bins[bin_of_luminance(1e9)] = 30;
@@ -132,6 +146,24 @@ mod tests {
         assert!(dimness_ev(4096.0) < 0.01 && dimness_ev(1e5) == 0.0);
         assert!((dimness_ev(100.0) - 0.36).abs() < 0.1 && dimness_ev(1.0) > 1.5);
         assert!(dimness_ev(0.0).is_finite() && dimness_ev(0.0) > 4.0);
+    }
+
+    #[test]
+    fn a_darker_scene_is_never_shown_brighter_and_a_moonlit_one_is_legible() {
+        // Tone of an even scene, stops above middle grey, from snow in the sun to a moonless night.
+        let tone = |log2: f32| {
+            let mut bins = vec![0; BINS];
+            bins[bin_of_luminance(log2.exp2())] = 1000;
+            log2 - (ev100_of_histogram(&bins).max(EV100_DARK) - ev100_of_luminance(1.0))
+        };
+        // A bin is a fifth of a stop wide.
+        let steps: Vec<f32> = (-140..160).map(|i| tone(0.1 * i as f32)).collect();
+        assert!(steps.windows(2).all(|w| w[1] >= w[0] - 0.21), "{steps:?}");
+        assert!(steps.windows(40).all(|w| w[39] >= w[0] - 0.01), "{steps:?}");
+        // 1.8 stops under middle grey are 58 of 255 on the screen, 3.5 are 19.
+        assert!((-1.9..-1.4).contains(&tone(-5.6)), "land under a full moon: {}", tone(-5.6));
+        assert!(tone(-14.0) < -3.5, "land under stars: {}", tone(-14.0));
+        assert!((1.4..1.8).contains(&tone(14.6)), "snow in the sun: {}", tone(14.6));
     }
 
     #[test]

@@ -157,8 +157,8 @@ impl Draft {
         let lines = |faults: &[Fault]| -> Vec<String> { faults.iter().map(|f| f.message.clone()).collect() };
         let tree = parse(&source).map_err(|faults| lines(&faults).join("\n"))?;
         let faults = Faults::default();
-        let beside = |name: &str| overlay.find(format!("bodies/{}/{name}", self.body));
-        let air = read_air(&Reader::new(&tree, &faults), datum, &Setting { beside: &beside, star });
+        let folder = format!("bodies/{}", self.body);
+        let air = read_air(&Reader::new(&tree, &faults), datum, &Setting { overlay, folder: &folder, star });
         let found = faults.into_inner();
         if found.iter().any(Fault::is_error) { Err(lines(&found).join("\n")) } else { Ok((air, lines(&found))) }
     }

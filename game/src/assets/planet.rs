@@ -17,7 +17,7 @@
 
 use super::atmosphere::{AirSpec, Datum, Setting, read_air};
 use super::fault::{AssetErrors, Fault, Source};
-use super::overlay::read_text;
+use super::overlay::{Overlay, read_text};
 use super::reader::{ANY, Faults, POSITIVE, Reader};
 use super::tree::{Data, Entry, Node, parse};
 use engine::air::Air;
@@ -148,9 +148,9 @@ fn read(r: Reader<'_>, elsewhere: Option<&Node>, folder: &Path, faults: &Faults)
     // Nothing is dragged here: gravity only serves the plausibility of `[physics]`, and stands for Earth's.
     let gm_m3_s2 = 9.8 * radius_m * radius_m;
     let datum = Datum::new(gm_m3_s2, radius_m);
-    let beside = |name: &str| Some(folder.join(name)).filter(|p| p.is_file());
     let star_light = Starlight::default();
-    let setting = Setting { beside: &beside, star: &star_light };
+    let overlay = Overlay::new(folder, &[]);
+    let setting = Setting { overlay: &overlay, folder: "", star: &star_light };
     let (spec, named) = match elsewhere {
         Some(node) => {
             r.text("atmosphere");

@@ -208,8 +208,8 @@ fn read_atmosphere(overlay: &Overlay, body: &str, datum: Datum, star: &Starlight
         physics.value.digest(&mut hash);
     }
     let first = faults.borrow().len();
-    let beside = |name: &str| overlay.find(format!("bodies/{body}/{name}"));
-    let air = read_air(&Reader::new(&tree, faults), datum, &Setting { beside: &beside, star });
+    let folder = format!("bodies/{body}");
+    let air = read_air(&Reader::new(&tree, faults), datum, &Setting { overlay, folder: &folder, star });
     tell_replaced(overlay, &relative, first, faults);
     (air, hash.finalize().to_hex().to_string())
 }

@@ -4,7 +4,7 @@ use super::*;
 use clap::CommandFactory;
 
 fn cli(words: &[&str]) -> Result<Cli, clap::Error> {
-    Cli::try_parse_from(std::iter::once("syzygy").chain(words.iter().copied()))
+    Cli::try_parse_from(std::iter::once("syzygy").chain(words.iter().copied())).and_then(led)
 }
 
 #[test]
@@ -40,6 +40,20 @@ fn play_is_what_happens_when_nothing_is_named() {
     assert!(bare.mode.is_none());
     assert_eq!((bare.play.start.as_deref(), bare.play.size), (Some("eclipse"), Some((800, 600))));
     assert!(matches!(cli(&["play", "--mods", "a", "--mods", "b"]).unwrap().mode, Some(Mode::Play(p)) if p.places.mods.len() == 2));
+}
+
+#[test]
+fn folders_may_be_named_before_the_command() {
+    let words = ["--mods", "a", "-v", "--assets", "x", "shot", "--mods", "b", "--assets", "y", "--size", "8x8", "--out", "p.png"];
+    let Some(Mode::Shot(shot)) = cli(&words).unwrap().mode else { panic!("other words") };
+    assert_eq!(shot.places.mods, ["a", "b"].map(PathBuf::from));
+    assert_eq!((shot.places.assets, shot.places.verbose), (Some(PathBuf::from("y")), 1));
+    let Some(Mode::Probe(Probe::Air(air))) = cli(&["--safe-mode", "probe", "air", "--body", "b", "--altitude-m", "0"]).unwrap().mode else {
+        panic!("other words")
+    };
+    assert!(air.common.places.safe_mode);
+    let told = cli(&["--start", "leo", "shot", "--size", "8x8", "--out", "p.png"]).unwrap_err().to_string();
+    assert!(told.contains("`syzygy COMMAND --start …`"), "{told}");
 }
 
 #[test]

@@ -14,7 +14,7 @@ pub mod stage;
 pub mod studio;
 pub mod window;
 
-use crate::cli::{Bench, Cli, HeadlessArgs, Mode, Places, Probe, ShotArgs};
+use crate::cli::{Cli, HeadlessArgs, Mode, ShotArgs};
 use crate::command::Commands;
 use crate::replay::{Log, LogError, Player, Recorder};
 use crate::save::{self, Slots};
@@ -101,9 +101,8 @@ pub enum Error {
 
 /// Runs the mode that the command line names, and turns what comes of it into an exit code.
 pub fn run(cli: Cli) -> ExitCode {
-    let mode = cli.mode.unwrap_or(Mode::Play(cli.play));
-    let places = places_of(&mode);
-    start_log(places.verbose);
+    let mut mode = cli.mode.unwrap_or(Mode::Play(cli.play));
+    start_log(mode.places_mut().verbose);
     let outcome = match &mode {
         Mode::Play(args) => window::play(args),
         Mode::Headless(args) => headless(args).map(|()| ExitCode::SUCCESS),
@@ -179,28 +178,6 @@ fn headless(args: &HeadlessArgs) -> Result<(), Error> {
         recorder.finish(&session.world).write(path, &crate::replay::recorder::header(&start))?;
     }
     Ok(())
-}
-
-fn places_of(mode: &Mode) -> &Places {
-    match mode {
-        Mode::Play(a) => &a.places,
-        Mode::Headless(a) => &a.places,
-        Mode::Replay(a) => &a.places,
-        Mode::Shot(a) => &a.places,
-        Mode::CheckAssets(a) => &a.places,
-        Mode::Probe(Probe::Air(a)) => &a.common.places,
-        Mode::Probe(Probe::Height(a)) => &a.common.places,
-        Mode::Probe(Probe::Kepler(a)) => &a.places,
-        Mode::Probe(Probe::Ephemeris(a)) => &a.common.places,
-        Mode::Probe(Probe::Eclipses(a)) => &a.common.places,
-        Mode::Probe(Probe::Propagate(a)) => &a.common.places,
-        Mode::Probe(Probe::Sky(a)) => &a.places,
-        Mode::Bench(Bench::Orbit(a)) => &a.places,
-        Mode::Bench(Bench::Ships(a)) => &a.places,
-        Mode::Bench(Bench::Kepler(a)) => &a.places,
-        Mode::Bench(Bench::Ephemeris(a)) => &a.places,
-        Mode::Bench(Bench::Air(a)) => &a.places,
-    }
 }
 
 /// Logs go to stderr, so that stdout stays machine output.

@@ -7,7 +7,8 @@
 //! count along the view's axis and are divided by the span of his depth buffer; ours count along the ray and are divided by [`Thickness::unit_m`].
 //!
 //! Several bodies may throw a shadow: air is shadowed where any of the cones holds it. A shell without a planet
-//! is a bank of fog, or a nebula: [`Thickness::ball`].
+//! is a bank of fog, or a nebula: [`Thickness::ball`]. One that lies in another's air is lit by the sun and the sky of that air where it lies
+//! (`light_in_air` of `shaders/pass/sky_thickness.wgsl`), which know of shadows: `shadow_share` then says nothing.
 //!
 //! GPU twin: `shaders/lib/thickness.wgsl`. Not here: reddening, penumbrae, light scattered twice: the model has none.
 
@@ -27,7 +28,7 @@ pub struct Thickness {
     pub colour: Vec3,
     /// `brightness`, 0 … 1000, 3 by default: how bright a lit way of one scale is; 1 is a white Lambert surface that faces the sun.
     pub brightness: f32,
-    /// `shadow_share`, 0 … 1, 0.2 by default: how bright shadowed air is beside lit air (k).
+    /// `shadow_share`, 0 … 1, 0.2 by default: how bright shadowed air is beside lit air (k). Of a bank of fog in a planet's air that air's own light counts.
     pub shadow_share: f32,
     /// `scale_m`, 1 … 1e15 m: the width of air that counts as one. Left out: the longest way that a ray can have in the shell, past the ground.
     pub scale_m: Option<f64>,

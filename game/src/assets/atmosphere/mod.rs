@@ -9,9 +9,9 @@ pub mod layers;
 pub mod optics;
 pub mod plausible;
 
-use super::fault::Fault;
+use super::fault::{Fault, nearest};
 use super::fields;
-use super::overlay::{DATA_MAX, read_bytes};
+use super::overlay::{DATA_MAX, Overlay, read_bytes};
 use super::reader::{ANY, Reader};
 use super::tree::{Data, Node};
 use crate::world::system::Fog;
@@ -23,7 +23,7 @@ use engine::air::{Air, Column, ColumnSpec, Model, RangeError};
 use engine::light::spectrum::Starlight;
 use engine::units::NM;
 use optics::Channels;
-use std::path::PathBuf;
+use std::path::Path;
 use std::sync::Arc;
 
 /// Air as its file describes it.
@@ -61,8 +61,10 @@ impl Datum {
 /// What an air is seen by, and where the files lie that it names.
 #[derive(Clone, Copy)]
 pub struct Setting<'a> {
-    /// Where a file beside the air's own lies, if there is one of this name.
-    pub beside: &'a dyn Fn(&str) -> Option<PathBuf>,
+    /// Where the files are found that it names.
+    pub overlay: &'a Overlay,
+    /// In which folder, by its relative path.
+    pub folder: &'a str,
     /// The light under which its colours are found.
     pub star: &'a Starlight,
 }
@@ -182,9 +184,15 @@ fn painted(table: Option<&Node>, gradient: &mut Gradient, setting: &Setting<'_>,
         let Some(entry) = table.and_then(|t| t.get(key)) else { continue };
         let name = entry.value.text().unwrap_or_default();
         let plain = !name.contains(['/', '\\', ':']);
-        let fault = match Some(name).filter(|_| plain).and_then(setting.beside) {
-            None => Fault::at(&entry.value.at, format!("`gradient.{key}` = \"{name}\": expected a PNG that lies beside this file"))
-                .help(Some("in a mod it may also lie beside the file that a patch changes, in the assets".to_owned())),
+        let beside = |name: &str| setting.overlay.find(Path::new(setting.folder).join(name));
+        let fault = match Some(name).filter(|_| plain).and_then(beside) {
+            None => {
+                let known: Vec<String> =
+                    setting.overlay.names(setting.folder, Some(".png")).iter().map(|stem| format!("{stem}.png")).collect();
+                Fault::at(&entry.value.at, format!("`gradient.{key}` = \"{name}\": expected a PNG that lies beside this file"))
+                    .help(Some("in a mod it may also lie beside the file that a patch changes, in the assets".to_owned()))
+                    .help(nearest(name, known.iter().map(String::as_str)))
+            }
             Some(path) => match read_bytes(&path, DATA_MAX).and_then(|bytes| painting(&bytes).map_err(|what| Fault::file(&path, what))) {
                 Ok(painted) => {
                     *map = painted;

@@ -431,3 +431,17 @@ fn banks_of_fog_are_placed_and_their_faults_told() {
         assert!(told.contains(part), "{part} in: {told}");
     }
 }
+
+#[test]
+fn a_painted_picture_that_is_not_there_is_told_with_the_nearest_that_is() {
+    let dir = assets();
+    let painted = |name: &str| format!("model = \"gradient\"\ntop_altitude_m = 9e4\n[gradient]\nshell_map = \"{name}\"\n");
+    put(dir.path(), AIR_FILE, painted("evening.png").as_bytes());
+    let told = || load_system(dir.path(), &[], "t").unwrap_err().text();
+    assert!(told().contains("atmosphere.toml:4:") && told().contains("in a mod it may also lie"), "{}", told());
+    // Those of a mod count as well as those of the assets.
+    let one = tempfile::tempdir().unwrap();
+    put(one.path(), "bodies/rock/evenings.png", b"");
+    let told = load_system(dir.path(), &[one.path().to_owned()], "t").unwrap_err().text();
+    assert!(told.contains("atmosphere.toml:4:") && told.contains("did you mean `evenings.png`?"), "{told}");
+}

@@ -25,7 +25,7 @@ use crate::render::pipeline::{PipelineKind, depth_entry, storage_entry, texture_
 use crate::render::report::AirReport;
 use crate::render::shared::{FrameContext, Mirror, Shared};
 use crate::render::targets::HDR;
-use crate::scene::gpu_data::{MAX_AIRS, SkySettings, SkyUniform};
+use crate::scene::gpu_data::{MAX_AIRS, SKY_HELD, SkySettings, SkyUniform};
 use crate::scene::{Body, Snapshot, Surface};
 use bytemuck::Zeroable;
 use choose::{Choice, Rect};
@@ -291,10 +291,9 @@ impl Sky {
             let (Some((id, air)), Some(uniform)) = (air_of(f.scene, choice), self.uniforms.get(i)) else { continue };
             let Some(painter) = self.painters.get(painter_of(&air.model)) else { continue };
             let Some(body) = f.scene.bodies.get(choice.body as usize) else { continue };
-            uniform.write(
-                &f.gpu.queue,
-                &SkyUniform { ids: [choice.body, self.steps, 0, 0], settings: painter.settings_in(f.scene, body, air) },
-            );
+            let holder = choice.held_by.and_then(|by| u32::try_from(by).ok()).filter(|_| matches!(body.surface, Surface::Nothing));
+            let ids = holder.map_or([choice.body, self.steps, 0, 0], |by| [choice.body, self.steps, SKY_HELD, by]);
+            uniform.write(&f.gpu.queue, &SkyUniform { ids, settings: painter.settings_in(f.scene, body, air) });
             let targets = f.targets;
             let (current, other) = if self.in_aerial { (&targets.aerial, &targets.opaque) } else { (&targets.opaque, &targets.aerial) };
             let (from, into) = if choice.rect == whole {

@@ -75,3 +75,89 @@ fn settings(model: &Settings, air: &Air, bare: bool) -> SkySettings {
     rows[1] = [narrow(1.0 / model.unit_m(&air.medium)), model.opacity, flag(model.shadow == ShadowShape::Cone), flag(bare)];
     rows
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::air::{Layer, Medium, Phase, Profile};
+    use crate::gpu::BackendChoice;
+    use crate::render::tests::empty_scene;
+    use crate::render::{OffscreenImage, Renderer, RendererOptions, Target};
+    use crate::scene::{AutoOr, Snapshot};
+    use glam::{Quat, Vec3};
+
+    const RADIUS_M: f32 = 6.371e6;
+    const LX: f32 = 1.28e5;
+
+    fn body(id: u16, centre_m: Vec3, radius_m: f32, surface: Surface, air: Air, sun: Vec3) -> Body {
+        Body {
+            id,
+            centre_m,
+            radius_m,
+            icrf_from_fixed: Quat::IDENTITY,
+            camera_altitude_m: centre_m.length() - radius_m,
+            camera_up: -centre_m.normalize_or(Vec3::NEG_Y),
+            sun_direction: sun,
+            sun_angular_radius_rad: 0.00465,
+            sun_illuminance_lx: Vec3::splat(LX),
+            occluders: Vec::new(),
+            albedo: Vec3::splat(0.2),
+            surface,
+            air: Some(air),
+        }
+    }
+
+    /// On the ground of a planet like the Earth, the sun behind the camera; before it a white bank of fog, or none.
+    fn scene(sun_deg: f32, ev100: f32, with_bank: bool) -> Snapshot {
+        let (sine, cosine) = sun_deg.to_radians().sin_cos();
+        let sun = Vec3::new(0.0, sine, cosine);
+        let gas = Layer {
+            scattering_per_m: Vec3::new(5.8e-6, 13.6e-6, 33.1e-6),
+            absorption_per_m: Vec3::ZERO,
+            profile: Profile::Exponential { scale_height_m: 8000.0 },
+            phase: Phase::Rayleigh,
+        };
+        let medium =
+            Medium { bottom_radius_m: f64::from(RADIUS_M), top_altitude_m: 1e5, ground_albedo: Vec3::splat(0.2), layers: vec![gas] };
+        let mut scene = Snapshot { exposure: AutoOr::Ev100(ev100), ..empty_scene([48, 48]) };
+        scene.star.centre_m = sun * 1.496e11;
+        let mut planet = body(3, Vec3::NEG_Y * (RADIUS_M + 2.0), RADIUS_M, Surface::Smooth, medium.into(), sun);
+        planet.camera_altitude_m = 2.0;
+        scene.bodies.push(planet);
+        if with_bank {
+            let fog = Settings { colour: Vec3::ONE, opacity: 8.0, ..Settings::default() }.ball(300.0);
+            let mut bank = body(900, Vec3::new(0.0, 320.0, -1500.0), 1e-3, Surface::Nothing, fog, sun);
+            bank.occluders.push(crate::scene::Occluder { id: 3, centre_m: scene.bodies[0].centre_m, radius_m: RADIUS_M });
+            scene.bodies.insert(0, bank);
+        }
+        scene
+    }
+
+    #[test]
+    fn a_bank_of_fog_is_lit_by_what_the_air_about_it_lets_through() {
+        let gpu = Gpu::headless(BackendChoice::Auto).unwrap_or_else(|e| panic!("this test draws: {e}"));
+        let mut renderer = Renderer::new(&gpu, RendererOptions::default()).unwrap();
+        let image = OffscreenImage::new(&gpu, [48, 48]);
+        let mut seen = |sun_deg, ev100| {
+            let [with, without] = [true, false].map(|bank| {
+                renderer.render(&gpu, &scene(sun_deg, ev100, bank), Target::Image(&image), None).unwrap();
+                let hdr = renderer.read_hdr(&gpu).unwrap();
+                assert!(hdr.rgba.iter().all(|v| v.is_finite()));
+                // The bank's middle stands 12° high.
+                let at = 4 * (12 * 48 + 24);
+                Vec3::new(hdr.rgba[at], hdr.rgba[at + 1], hdr.rgba[at + 2])
+            });
+            with - without
+        };
+        // Its brightness is told for a face-on white surface, 1/π; at noon the air takes a part of the sun's light and its sky gives some back.
+        let white = Settings::default().brightness * LX * core::f32::consts::FRAC_1_PI;
+        let noon = seen(60.0, 15.0);
+        assert!((0.7..1.4).contains(&(noon.y / white)) && noon.max_element() < 1.3 * noon.min_element(), "{noon}, white {white}");
+        let low = seen(1.0, 10.0);
+        assert!(low.x > 1.8 * low.z && low.y < 0.5 * noon.y && low.y > 0.01 * noon.y, "{low}");
+        let dusk = seen(-6.0, 3.0);
+        assert!(dusk.y < 3e-4 * noon.y && dusk.z > dusk.x, "{dusk}");
+        let night = seen(-25.0, -4.0);
+        assert!(night.y < 1e-6 * noon.y, "{night}");
+    }
+}
