@@ -87,6 +87,22 @@ impl Draft {
         Ok(Self { body: body.to_owned(), saved: now.clone(), now, path, base, undone: Vec::new(), done: Vec::new(), held: false })
     }
 
+    /// Takes over what the files say since somebody wrote them elsewhere: a draft that was saved follows, as a step; one that was not stays,
+    /// and would go back to what they say now.
+    pub fn follow(&mut self, overlay: &Overlay, target: Target) {
+        let Ok(Self { now, path, base, .. }) = Self::open(overlay, &self.body, target) else { return };
+        (self.path, self.base) = (path, base);
+        // Written `3` and read as 3.0, what was saved from here is no news.
+        if same(&now, &self.saved) {
+            return;
+        }
+        let was_saved = self.is_saved();
+        self.saved = now;
+        if was_saved {
+            self.revert();
+        }
+    }
+
     /// Takes a step. While a slider is `held` its many values are one step.
     pub fn step(&mut self, now: Value, held: bool) {
         if now == self.now {
@@ -195,6 +211,16 @@ impl Draft {
     }
 }
 
+/// Whether two values mean the same.
+fn same(a: &Value, b: &Value) -> bool {
+    match (a, b) {
+        (Value::Number(a), Value::Number(b)) => a.as_f64() == b.as_f64(),
+        (Value::Array(a), Value::Array(b)) => a.len() == b.len() && a.iter().zip(b).all(|(a, b)| same(a, b)),
+        (Value::Object(a), Value::Object(b)) => a.len() == b.len() && a.iter().all(|(key, a)| b.get(key).is_some_and(|b| same(a, b))),
+        _ => a == b,
+    }
+}
+
 /// The values of files laid over each other.
 fn read(files: &[PathBuf]) -> Result<Value, AssetErrors> {
     let mut tree: Option<Node> = None;
@@ -298,6 +324,37 @@ mod tests {
         draft.revert();
         assert!(draft.is_saved() && draft.undo());
         assert_eq!(draft.now, with(5e4));
+    }
+
+    #[test]
+    fn a_file_that_is_written_elsewhere_is_followed_and_an_edit_is_not_lost_to_it() {
+        let dir = assets();
+        let mods = tempfile::tempdir().unwrap();
+        let overlay = overlay(dir.path(), &[mods.path().to_owned()]);
+        let mut draft = Draft::open(&overlay, "rock", Target::Mod).unwrap();
+        let with = |draft: &Draft, top: Value| {
+            let mut now = draft.now.clone();
+            now["top_altitude_m"] = top;
+            now
+        };
+        draft.step(with(&draft, json!(70_000)), false);
+        draft.save().unwrap();
+        draft.follow(&overlay, Target::Mod);
+        assert!(draft.is_saved() && draft.steps() == (1, 0), "its own file is no news");
+        std::fs::write(&draft.path, "top_altitude_m = 60000.0\n").unwrap();
+        draft.follow(&overlay, Target::Mod);
+        assert!(draft.is_saved() && draft.now["top_altitude_m"] == json!(60_000.0));
+        assert!(draft.undo() && draft.now["top_altitude_m"] == json!(70_000), "and can be taken back");
+        // What is not saved stays, and goes back to the file.
+        std::fs::write(&draft.path, "top_altitude_m = 50000.0\n").unwrap();
+        draft.follow(&overlay, Target::Mod);
+        assert_eq!(draft.now["top_altitude_m"], json!(70_000));
+        draft.revert();
+        assert!(draft.is_saved() && draft.now["top_altitude_m"] == json!(50_000.0));
+        // A broken file changes nothing here.
+        std::fs::write(&draft.path, "top_altitude_m = \n").unwrap();
+        draft.follow(&overlay, Target::Mod);
+        assert_eq!(draft.now["top_altitude_m"], json!(50_000.0));
     }
 
     #[test]

@@ -161,6 +161,18 @@ fn change(list: &mut Vec<Node>, changes: Vec<Entry>, faults: &mut Vec<Fault>) {
     }
 }
 
+/// A list laid over one that has an item of the same name: it stands for all of the other, where a change of that item was likely meant.
+fn whole(old: &Node, new: &Entry) -> Option<Fault> {
+    let (Data::Array(old), Data::Array(list)) = (&old.data, &new.value.data) else { return None };
+    let named = |name: &str| old.iter().any(|item| item.name() == Some(name));
+    let tables = list.iter().filter(|item| matches!(item.data, Data::Table(_)));
+    let name = tables.filter_map(Node::name).find(|name| named(name)).filter(|_| old.len() > list.len())?;
+    let key = &new.key;
+    let message = format!("this list takes the place of all {} of `{key}`, though `{name}` is one of them", old.len());
+    let help = format!("in a patch [{key}.{name}] changes that one and [[{key}.add]] adds another");
+    Some(Fault::warning(&new.key_at, message).help(Some(help)))
+}
+
 impl Node {
     /// Lays a patch over this tree (the rules are at the head); faults are what a list does not have.
     pub fn patch(&mut self, patch: Self, faults: &mut Vec<Fault>) {
@@ -181,7 +193,10 @@ impl Node {
                         Some(old) if matches!((&old.value.data, &entry.value.data), (Data::Table(_) | Data::Array(_), Data::Table(_))) => {
                             old.value.patch(entry.value, faults);
                         }
-                        Some(old) => *old = entry,
+                        Some(old) => {
+                            faults.extend(whole(&old.value, &entry));
+                            *old = entry;
+                        }
                         None => mine.push(entry),
                     }
                 }

@@ -288,8 +288,12 @@ impl Hud {
             *left -= dt;
         }
         self.notices.retain(|(_, left)| *left > 0.0);
+        // Beside the editor's panel, which is read at the same time.
+        let beside = self.screen == Screen::Air && !self.air.hidden;
         if !self.notices.is_empty() {
-            panels::area(ctx, "notices", egui::Align2::CENTER_BOTTOM, [0.0, -250.0], |ui| {
+            let (corner, offset) =
+                if beside { (egui::Align2::LEFT_BOTTOM, [10.0, -10.0]) } else { (egui::Align2::CENTER_BOTTOM, [0.0, -250.0]) };
+            panels::area(ctx, "notices", corner, offset, |ui| {
                 for (text, left) in &self.notices {
                     let fade = left.clamp(0.0, 1.0);
                     style::panel(0.75 * fade).show(ui, |ui| ui.label(egui::RichText::new(text).color(style::TEXT.gamma_multiply(fade))));
@@ -297,9 +301,11 @@ impl Hud {
             });
         }
         if let Some(text) = &self.fault {
-            panels::area(ctx, "fault", egui::Align2::CENTER_TOP, [0.0, 104.0], |ui| {
+            let (corner, offset) = if beside { (egui::Align2::LEFT_TOP, [10.0, 10.0]) } else { (egui::Align2::CENTER_TOP, [0.0, 104.0]) };
+            let room = if beside { ctx.content_rect().width() - air::WIDTH - 70.0 } else { 760.0 };
+            panels::area(ctx, "fault", corner, offset, |ui| {
                 style::panel(0.92).show(ui, |ui| {
-                    ui.set_max_width(760.0);
+                    ui.set_max_width(room.clamp(240.0, 760.0));
                     ui.label(egui::RichText::new("A changed file is broken; the last good one stays in force").color(style::DANGER));
                     ui.label(egui::RichText::new(text).font(style::mono(12.0)));
                 });

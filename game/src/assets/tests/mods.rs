@@ -445,3 +445,22 @@ fn a_painted_picture_that_is_not_there_is_told_with_the_nearest_that_is() {
     let told = load_system(dir.path(), &[one.path().to_owned()], "t").unwrap_err().text();
     assert!(told.contains("atmosphere.toml:4:") && told.contains("did you mean `evenings.png`?"), "{told}");
 }
+
+#[test]
+fn a_list_that_takes_the_place_of_another_by_mistake_is_told() {
+    let dir = assets();
+    let one = tempfile::tempdir().unwrap();
+    let (head, rest) = AIR.split_once("[[layers]]\n").unwrap();
+    let (layer, physics) = rest.split_once("[physics]").unwrap();
+    let named = |name: &str| format!("[[layers]]\nname = \"{name}\"\n{layer}");
+    put(dir.path(), AIR_FILE, format!("{head}{}{}[physics]{physics}", named("gas"), named("dust")).as_bytes());
+    let warnings = |text: String| {
+        put(one.path(), "bodies/rock/atmosphere.patch.toml", text.as_bytes());
+        load_system(dir.path(), &[one.path().to_owned()], "t").unwrap_or_else(|e| panic!("{}", e.text())).warnings.clone()
+    };
+    let told = |w: &String| w.contains("takes the place of all 2 of `layers`") && w.contains("[layers.gas] changes that one");
+    assert!(warnings(named("gas")).iter().any(told), "{:?}", warnings(named("gas")));
+    for meant in [named("other"), named("gas") + &named("dust"), "[layers.gas.profile]\nscale_height_m = 7000.0\n".to_owned()] {
+        assert!(!warnings(meant.clone()).iter().any(told), "{meant}");
+    }
+}

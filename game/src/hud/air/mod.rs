@@ -18,6 +18,9 @@ use egui::{Align2, CollapsingHeader, RichText, ScrollArea, Slider, Ui};
 use serde_json::{Map, Value, json};
 use widgets::Done;
 
+/// Width of the panel, points.
+pub const WIDTH: f32 = 500.0;
+
 /// State of the editor.
 #[derive(Debug, Default)]
 pub struct Editor {
@@ -60,7 +63,7 @@ pub fn show(ctx: &egui::Context, editor: &mut Editor, body: &str, screen: &mut S
     });
     area(ctx, "air", Align2::RIGHT_TOP, [-10.0, 10.0], |ui| {
         style::panel(0.9).show(ui, |ui| {
-            ui.set_width(500.0_f32.min(ctx.content_rect().width() - 40.0));
+            ui.set_width(WIDTH.min(ctx.content_rect().width() - 40.0));
             ui.horizontal(|ui| {
                 ui.label(style::heading(&format!("Air of {body}")));
                 if ui.button("Close").clicked() {

@@ -19,8 +19,7 @@ impl App {
             self.hud.screen = Screen::Air;
             return;
         }
-        let target = if self.opening.args.edit_assets { Target::Assets } else { Target::Mod };
-        match Draft::open(&self.opening.assets.overlay, &body.key, target) {
+        match Draft::open(&self.opening.assets.overlay, &body.key, self.target()) {
             Ok(draft) => {
                 let readout = &flight.readout;
                 let place = Place {
@@ -35,6 +34,20 @@ impl App {
             }
             Err(errors) => self.hud.message = Some(errors.lines()),
         }
+    }
+
+    /// Where a draft is written.
+    const fn target(&self) -> Target {
+        if self.opening.args.edit_assets { Target::Assets } else { Target::Mod }
+    }
+
+    /// Takes files that changed into the draft, too.
+    pub(super) fn follow_air(&mut self) {
+        let target = self.target();
+        if let Some(draft) = &mut self.hud.air.draft {
+            draft.follow(&self.opening.assets.overlay, target);
+        }
+        self.hud.air.changed = true;
     }
 
     /// Builds what is drawn of a draft that changed; one that cannot be built leaves the last one in the picture.

@@ -64,7 +64,7 @@ impl App {
                 });
                 self.hud.warn(&system.warnings);
                 self.trial = None;
-                self.hud.air.changed = true;
+                self.follow_air();
                 if !seen_only {
                     self.look_ahead();
                 }
