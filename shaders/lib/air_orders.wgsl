@@ -39,9 +39,19 @@ fn orders_sun_mu(air: Air, dip: vec2<f32>, x: f32) -> f32 {
     return clamp(sine * dip.y - (1.0 - 0.5 * t * t) * dip.x, -1.0, 1.0);
 }
 
-// Coordinate of the altitude, 0 to 1.
+// Coordinate of the altitude, 0 to 1: even from row to row.
 fn orders_altitude_y(air: Air, altitude: f32) -> f32 {
-    return sqrt(clamp(altitude / air.shape.y, 0.0, 1.0));
+    let root = vec4<f32>(sqrt(clamp(altitude / air.shape.y, 0.0, 1.0)));
+    let zero = vec4<f32>(0.0);
+    let one = vec4<f32>(1.0);
+    let rows = clamp((root - air.levels[0]) * air.level_steps[0], zero, one) + clamp((root - air.levels[1]) * air.level_steps[1], zero, one)
+        + clamp((root - air.levels[2]) * air.level_steps[2], zero, one) + clamp((root - air.levels[3]) * air.level_steps[3], zero, one);
+    return dot(rows, one) / f32(ORDERS_ALTITUDES - 1u);
+}
+// Altitude of a row.
+fn orders_altitude(air: Air, row: u32) -> f32 {
+    let root = air.levels[row / 4u][row % 4u];
+    return min(root * root, 1.0) * air.shape.y;
 }
 
 // Coordinate of the view's zenith cosine, 0 to 1: nearly even in the angle.

@@ -35,7 +35,9 @@ struct Air {
     forward: vec4<f32>,         // of what each class scatters, the share that goes straight on: engine/src/air/model/forward.rs
     cap: vec4<f32>,             // value at which its peak is then cut off, sr⁻¹
     aureole: Phases,            // where it scatters light that such peaks have turned before
-    pad: array<vec4<f32>, 14>,  // to a multiple of 256 bytes: any graphics card binds one air of the list
+    levels: array<vec4<f32>, 4>,       // roots of the altitudes of the rows of further orders, by the top's: engine/src/air/model/levels.rs
+    level_steps: array<vec4<f32>, 4>,  // 1 / from each to the next; 0 after the last
+    pad: array<vec4<f32>, 6>,  // to a multiple of 256 bytes: any graphics card binds one air of the list
 }
 
 struct Airs {

@@ -49,8 +49,7 @@ fn store(at: vec3<u32>, sun: u32, sum: Modes) {
 
 // Cosine of the zenith angle of the k-th sun at an altitude of the table.
 fn sun_mu(altitude_row: u32, k: u32) -> f32 {
-    let root = f32(altitude_row) / f32(ORDERS_ALTITUDES - 1u);
-    return orders_sun_mu(air, horizon_dip(air.shape.x, root * root * air.shape.y), f32(k) / f32(ORDERS_SUNS - 1u));
+    return orders_sun_mu(air, horizon_dip(air.shape.x, orders_altitude(air, altitude_row)), f32(k) / f32(ORDERS_SUNS - 1u));
 }
 
 // A thread per sun, a group per direction and altitude.
@@ -164,8 +163,7 @@ fn seed(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_index) k
 
 // Illuminance on level ground by the light that scattering left going straight on: of the sky, but in no order's radiance.
 fn aureole(row: u32, mu: f32) -> vec3<f32> {
-    let root = f32(row) / f32(ORDERS_ALTITUDES - 1u);
-    let altitude = root * root * air.shape.y;
+    let altitude = orders_altitude(air, row);
     let lit = max(mu, 0.0) * visible_above_limb(SUN_RAD, sun_elevation(air.shape.x, altitude, mu));
     return lit * (air_sun_beam(air, transmittance, linear, 1, altitude, mu).rgb - air_sun_transmittance(air, transmittance, linear, 0, altitude, mu));
 }

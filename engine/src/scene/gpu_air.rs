@@ -2,6 +2,7 @@
 
 use super::gpu_data::vec4;
 use crate::air::model::forward::Truncated;
+use crate::air::model::levels::Levels;
 use crate::air::model::orders::SunMap;
 use crate::air::model::spread::{RINGS, SUNS, Spread};
 use crate::air::model::view_space::Spacing;
@@ -56,7 +57,9 @@ pub struct AirUniform {
     pub forward: [f32; 4],
     pub cap: [f32; 4],
     pub aureole: PhasesUniform,
-    pub pad: [[f32; 4]; 14],
+    pub levels: [[f32; 4]; 4],
+    pub level_steps: [[f32; 4]; 4],
+    pub pad: [[f32; 4]; 6],
 }
 
 // A graphics card binds one air of the list only where its place is a multiple of this.
@@ -88,6 +91,7 @@ impl AirUniform {
         }
         let map = SunMap::new(medium);
         air.orders = [map.scale, map.low, map.inverse, map.knee].map(narrow);
+        [air.levels, air.level_steps] = Levels::new(medium).vectors();
         for (i, class) in classes.list.iter().take(Classes::MAX).enumerate() {
             let cut = Truncated::new(class);
             (air.forward[i], air.cap[i]) = (narrow(cut.share), narrow(cut.cap));

@@ -4,9 +4,12 @@
 
 pub mod forward;
 pub mod gradient;
+pub mod levels;
 pub mod limb_table;
 pub mod maps;
 pub mod orders;
+mod paths;
+mod peaks;
 pub mod physical;
 pub mod shell;
 pub mod spread;

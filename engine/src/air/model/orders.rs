@@ -19,6 +19,9 @@
 //! in f64, for any layers, profiles and phase functions, once for a medium.
 
 use super::forward::Truncated;
+use super::levels::Levels;
+use super::paths::{self, Matter};
+use super::peaks::{self, Around};
 use super::sun_map::dip;
 use super::two_stream::{self, Column};
 use crate::air::{Class, Classes, Medium};
@@ -26,12 +29,13 @@ use crate::space::relative::narrow;
 use core::f64::consts::PI;
 use glam::DVec3;
 
+pub(super) use super::paths::step_at;
 pub use super::sun_map::SunMap;
 pub use super::two_stream::SEED_ROWS;
 
 /// Heights of the sun in a table.
 pub const SUNS: usize = 32;
-/// Altitudes in a table.
+/// Altitudes in a table: [`Levels`].
 pub const ALTITUDES: usize = 16;
 /// Zenith cosines of the view in a table, nearly even in the angle.
 pub const VIEWS: usize = 20;
@@ -45,8 +49,6 @@ pub const DIRECTIONS: usize = UP + DOWN;
 pub const STEPS: usize = 16;
 /// Degree to which the sum over the directions from an altitude is exact.
 const EXACT: usize = 8;
-/// Sharpness of the lobe in which a peak's light comes, as wide as directions lie apart: exp((cos θ − 1) · this).
-const LOBE: f64 = 40.0;
 /// Fourier modes in the azimuth.
 pub const MODES: usize = 4;
 /// Rows of four numbers that open a direction.
@@ -65,12 +67,6 @@ pub const ROWS: usize = 2 * DRAWN_AT - KERNELS_AT;
 pub const MAX_ORDERS: u32 = 8;
 /// Orders that are computed before a two-stream solution takes the place of all that follow, and is scattered as often.
 const BEFORE_SEED: u32 = 2;
-
-/// Altitude of a table's row, m: evenly in its root; the last a hair below the top.
-pub(super) fn altitude_m(medium: &Medium, row: usize) -> f64 {
-    let x = row as f64 / (ALTITUDES - 1) as f64;
-    medium.top_altitude_m * (x * x).min(1.0 - 1e-6)
-}
 
 /// What the precomputation of a medium's further orders needs.
 #[derive(Clone, Debug, PartialEq)]
@@ -92,6 +88,8 @@ pub(super) struct Direction {
     pub(super) cosine: f64,
     /// Its solid angle, all azimuths together.
     pub(super) weight: f64,
+    /// Root of the part of the way from the horizon to the zenith or the nadir.
+    pub(super) part: f64,
 }
 
 /// The classes of a medium, whole and without their peaks.
@@ -108,13 +106,16 @@ impl Plan {
         let deep = column.is_deep();
         let mut rows = Vec::with_capacity(ROWS);
         let [mut kernels, mut drawn] = [(); 2].map(|()| Vec::with_capacity(DRAWN_AT - KERNELS_AT));
+        let (levels, matter) = (Levels::new(medium), Matter::new(medium, &classes));
+        let around: Vec<_> = (0..VIEWS).map(view_cosine).map(Around::new).collect();
         for row in 0..ALTITUDES {
-            let altitude_m = altitude_m(medium, row);
+            let altitude_m = levels.altitude_m(row);
             let directions = directions(medium, altitude_m);
             for (i, direction) in directions.iter().enumerate() {
-                path_rows(medium, &classes, altitude_m, direction, (i >= UP, deep), &mut rows);
+                paths::rows(&matter, &levels, altitude_m, direction, i >= UP, &mut rows);
             }
-            kernel_rows(medium, &classes, row, &directions, [&mut kernels, &mut drawn]);
+            let shares = shares(medium, &classes, &levels, row);
+            kernel_rows(&classes, shares, (&directions, horizon(medium, altitude_m)), &around, [&mut kernels, &mut drawn]);
         }
         rows.append(&mut kernels);
         rows.append(&mut drawn);
@@ -162,14 +163,19 @@ fn gauss_legendre(n: usize) -> Vec<(f64, f64)> {
         .collect()
 }
 
+/// Zenith angle of the horizon.
+fn horizon(medium: &Medium, altitude_m: f64) -> f64 {
+    let (sine, cosine) = dip(medium.bottom_radius_m, altitude_m);
+    0.5 * PI + libm::atan2(sine, cosine)
+}
+
 /// The directions from an altitude: zenith angles as squares from the horizon, where the sky changes most.
 pub(super) fn directions(medium: &Medium, altitude_m: f64) -> Vec<Direction> {
-    let (sine, cosine) = dip(medium.bottom_radius_m, altitude_m);
-    let horizon = 0.5 * PI + libm::atan2(sine, cosine);
+    let horizon = horizon(medium, altitude_m);
     let side = |n: usize, width: f64, sign: f64| {
         gauss_legendre(n).into_iter().map(move |(x, w)| {
             let (sin, cosine) = libm::sincos(horizon + sign * width * x * x);
-            Direction { cosine, weight: 2.0 * PI * sin * w * 2.0 * x * width }
+            Direction { cosine, weight: 2.0 * PI * sin * w * 2.0 * x * width, part: x }
         })
     };
     let mut out: Vec<Direction> = side(UP, horizon, -1.0).chain(side(DOWN, PI - horizon, 1.0)).collect();
@@ -215,88 +221,9 @@ fn corrected(directions: &mut [Direction]) {
     }
 }
 
-/// Where a step begins: squares of even parts on both sides of the lowest point, where air is densest.
-pub(super) fn step_at(low: f64, end: f64, part: f64) -> f64 {
-    let before = low.sqrt();
-    let y = part * (before + (end - low).sqrt()) - before;
-    low + y * y.abs()
-}
-
 pub(super) fn row3(v: DVec3, w: f64) -> [f32; 4] {
     // A medium that no file could hold must not put a NaN into the tables.
     [v.x, v.y, v.z, w].map(|x| if x.is_finite() { narrow(x) } else { 0.0 })
-}
-
-/// Mean of x on [0, 1] weighed by e^(−depth x).
-fn centroid(depth: f64) -> f64 {
-    if depth < 1e-2 { 0.5 - depth / 12.0 } else { 1.0 / depth - 1.0 / libm::expm1(depth) }
-}
-
-fn path_rows(
-    medium: &Medium,
-    classes: &[(Class, Truncated)],
-    from_m: f64,
-    direction: &Direction,
-    (hits, deep): (bool, bool),
-    rows: &mut Vec<[f32; 4]>,
-) {
-    let (bottom, top) = (medium.bottom_radius_m, medium.top_altitude_m);
-    let (r, q0) = (bottom + from_m, from_m * (2.0 * bottom + from_m));
-    let slope = r * direction.cosine;
-    let to_ground = (slope * slope - q0).max(0.0).sqrt();
-    let end = if hits {
-        if slope < 0.0 { q0 / (to_ground - slope) } else { 0.0 }
-    } else {
-        let rest = (top * (2.0 * bottom + top) - q0).max(0.0);
-        let root = (slope * slope + rest).sqrt();
-        if slope > 0.0 { rest / (root + slope) } else { root - slope }
-    };
-    let low = (-slope).clamp(0.0, end);
-    let altitude = |s: f64| {
-        let q = q0 + s * (2.0 * slope + s);
-        q / (bottom + (bottom * bottom + q).max(0.0).sqrt())
-    };
-    let at = rows.len();
-    rows.resize(at + HEAD_ROWS, [0.0; 4]);
-    let mut through = DVec3::ONE;
-    for i in 0..STEPS {
-        let (from, to) = (step_at(low, end, i as f64 / STEPS as f64), step_at(low, end, (i + 1) as f64 / STEPS as f64));
-        let (length, s) = (to - from, 0.5 * (from + to));
-        // Two Gauss points.
-        let points = [0.211_324_865_405, 0.788_675_134_595].map(|x| altitude(from + x * length));
-        let mean = |f: &dyn Fn(f64) -> DVec3| 0.5 * (f(points[0]) + f(points[1]));
-        let mut extinction = mean(&|h| medium.extinction(h));
-        let mut scattered = [DVec3::ZERO; Classes::MAX];
-        for ((class, truncated), slot) in classes.iter().zip(&mut scattered) {
-            *slot = mean(&|h| class.scattering(medium, h));
-            extinction -= *slot * truncated.share;
-        }
-        extinction = extinction.max(DVec3::ZERO);
-        let total: DVec3 = scattered.iter().sum();
-        let depth = extinction * length;
-        let kept = depth.to_array().map(|x| libm::exp(-x));
-        // ∫ e^(−σs) ds over the step, in front of it the way to the eye.
-        let arrives = DVec3::from_array(
-            [0, 1, 2].map(|c| if depth[c] > 1e-4 { (1.0 - kept[c]) / extinction[c] } else { length * (1.0 - 0.5 * depth[c]) }),
-        ) * through;
-        // Where the light comes from: of deep steps the near side.
-        let s = if deep { from + length * depth.to_array().map(centroid).iter().sum::<f64>() / 3.0 } else { s };
-        let h = altitude(s);
-        let (sine, cosine) = dip(bottom, h.max(0.0));
-        let place = (h / top).clamp(0.0, 1.0).sqrt() * (ALTITUDES - 1) as f64;
-        let radius = bottom + h;
-        rows.push(row3(DVec3::new(r, s, slope + s) / radius, h));
-        rows.push(row3(DVec3::new(place, sine, cosine), 0.0));
-        rows.push(row3(total * arrives, 0.0));
-        rows.extend(scattered.iter().map(|x| row3(*x * arrives, 0.0)));
-        through *= DVec3::from_array(kept);
-    }
-    let weight = direction.weight * direction.cosine.max(0.0);
-    let ground = if hits { through * medium.ground_albedo.as_dvec3() / PI } else { DVec3::ZERO };
-    if let [first, second, ..] = &mut rows[at..] {
-        *first = row3(DVec3::new(direction.cosine, r / bottom, end / bottom), weight);
-        *second = row3(ground, 0.0);
-    }
 }
 
 /// Zenith cosine of a table's view.
@@ -317,59 +244,60 @@ fn legendre(cosine: f64) -> [f64; EXACT + 1] {
 }
 
 /// What each class scatters around a row of altitude, as much as interpolation between rows gives this one, as a share of all.
-fn shares(medium: &Medium, classes: &[(Class, Truncated)], row: usize) -> [DVec3; Classes::MAX] {
+fn shares(medium: &Medium, classes: &[(Class, Truncated)], levels: &Levels, row: usize) -> [DVec3; Classes::MAX] {
     const PARTS: i32 = 8;
     let mut shares = [DVec3::ZERO; Classes::MAX];
-    for k in -PARTS..=PARTS {
-        let x = (row as f64 + f64::from(k) / f64::from(PARTS)) / (ALTITUDES - 1) as f64;
-        if (0.0..=1.0).contains(&x) {
-            // The hat function, by the width in altitude; the row itself always has its say.
-            let weight = f64::from(PARTS - k.abs()) * x + if k == 0 { 1e-9 } else { 0.0 };
-            let at = |class: &Class| class.scattering(medium, x * x * medium.top_altitude_m) * weight;
-            shares.iter_mut().zip(classes).for_each(|(sum, (class, _))| *sum += at(class));
-        }
+    let place = |k: i32| levels.between_m(row as f64 + f64::from(k) / f64::from(2 * PARTS));
+    for k in 1 - PARTS..PARTS {
+        // The hat function, by the width in altitude; the row itself always has its say.
+        let width = place(2 * k + 1) - place(2 * k - 1);
+        let weight = f64::from(PARTS - k.abs()) * width + if k == 0 { 1e-9 } else { 0.0 };
+        let at = |class: &Class| class.scattering(medium, place(2 * k)) * weight;
+        shares.iter_mut().zip(classes).for_each(|(sum, (class, _))| *sum += at(class));
     }
     let total = shares.iter().sum::<DVec3>().max(DVec3::splat(1e-300));
     shares.map(|x| x / total)
 }
 
 /// Kernels of an altitude, for the next order and for what is drawn: how much of the light of a direction, by its modes in the azimuth, is
-/// scattered towards a view. What of it a peak turns by little comes from about the view itself, as far as the directions tell them apart.
-fn kernel_rows(medium: &Medium, classes: &[(Class, Truncated)], row: usize, directions: &[Direction], rows: [&mut Vec<[f32; 4]>; 2]) {
+/// scattered towards a view. For what is drawn with the light that peaks turn.
+fn kernel_rows(
+    classes: &[(Class, Truncated)],
+    shares: [DVec3; Classes::MAX],
+    (directions, horizon): (&[Direction], f64),
+    around: &[Around],
+    [next, drawn]: [&mut Vec<[f32; 4]>; 2],
+) {
     const AZIMUTHS: usize = 24;
-    let shares = shares(medium, classes, row);
-    let used = || classes.iter().zip(shares).filter(|(_, share)| share.max_element() > 1e-6);
-    let [next, drawn] = rows;
+    let used: Vec<_> = classes.iter().zip(shares).filter(|(_, share)| share.max_element() > 1e-6).collect();
+    let rings: Vec<_> = used.iter().map(|((class, truncated), _)| peaks::weights(class, truncated)).collect();
     let modes: Vec<(f64, [f64; MODES])> = (0..AZIMUTHS)
         .map(|i| {
             let turn = PI * (i as f64 + 0.5) / AZIMUTHS as f64;
             (libm::cos(turn), core::array::from_fn(|m| libm::cos(m as f64 * turn) / AZIMUTHS as f64 * if m > 0 { 2.0 } else { 1.0 }))
         })
         .collect();
-    for view in 0..VIEWS {
+    for (view, around) in around.iter().enumerate() {
         let cosine = view_cosine(view);
         let [mut kernels, mut peaks] = [(); 2].map(|()| vec![[DVec3::ZERO; MODES]; directions.len()]);
-        for ((class, truncated), share) in used() {
-            let mut found = vec![[[0.0; MODES]; 2]; directions.len()];
+        for (((class, truncated), share), rings) in used.iter().zip(&rings) {
+            let mut found = vec![[0.0; MODES]; directions.len()];
             for (direction, found) in directions.iter().zip(&mut found) {
                 let across = ((1.0 - cosine * cosine) * (1.0 - direction.cosine * direction.cosine)).max(0.0).sqrt();
                 for (turn, modes) in &modes {
                     let mu = (cosine * direction.cosine + across * turn).clamp(-1.0, 1.0);
-                    let values =
-                        [class.value(mu).min(truncated.cap), if truncated.share > 0.0 { libm::exp((mu - 1.0) * LOBE) } else { 0.0 }];
-                    for (sum, value) in found.iter_mut().zip(values) {
-                        sum.iter_mut().zip(modes).for_each(|(sum, m)| *sum += direction.weight * value * m);
-                    }
+                    let value = direction.weight * class.value(mu).min(truncated.cap);
+                    found.iter_mut().zip(modes).for_each(|(sum, m)| *sum += value * m);
                 }
             }
-            // The sums over directions are not exact: all the light is kept by factors.
-            let scale = |k: usize, kept: f64| kept / found.iter().map(|f| f[k][0]).sum::<f64>().max(1e-9);
-            let (left, peak) = (scale(0, truncated.left), scale(1, truncated.share));
-            for ((kernel, of_peak), [a, b]) in kernels.iter_mut().zip(&mut peaks).zip(&found) {
-                for m in 0..MODES {
-                    kernel[m] += share * (left * a[m]);
-                    of_peak[m] += share * (peak * b[m]);
-                }
+            // The sums over directions are not exact: all the light is kept by a factor.
+            let left = truncated.left / found.iter().map(|f| f[0]).sum::<f64>().max(1e-9);
+            let add = |to: &mut [[DVec3; MODES]], of: &[[f64; MODES]], by: f64| {
+                to.iter_mut().zip(of).for_each(|(to, of)| to.iter_mut().zip(of).for_each(|(sum, x)| *sum += *share * (by * x)));
+            };
+            add(&mut kernels, &found, left);
+            if truncated.share > 0.0 {
+                add(&mut peaks, &peaks::kernel(around, rings, directions, horizon), 1.0);
             }
         }
         let channels = |modes: [DVec3; MODES]| [0, 1, 2].map(|c| modes.map(|x| if x[c].is_finite() { narrow(x[c]) } else { 0.0 }));
@@ -410,7 +338,7 @@ mod tests {
         assert_eq!(plan.rows.len(), ROWS);
         let aerosol = Truncated::new(&Classes::of(&earth()).list[1]).share;
         for altitude in [0, 7, 15] {
-            let of_aerosol = shares(&earth(), &classes(&earth()), altitude)[1];
+            let of_aerosol = shares(&earth(), &classes(&earth()), &Levels::new(&earth()), altitude)[1];
             for view in 0..VIEWS {
                 for c in 0..3 {
                     let (next, drawn) = (kept(&plan, KERNELS_AT, altitude, view, c), kept(&plan, DRAWN_AT, altitude, view, c));
@@ -429,7 +357,7 @@ mod tests {
         medium.layers.truncate(1);
         let plan = Plan::new(&medium);
         for altitude in [0, 9] {
-            let directions = directions(&medium, altitude_m(&medium, altitude));
+            let directions = directions(&medium, Levels::new(&medium).altitude_m(altitude));
             for view in 0..VIEWS {
                 let at = DRAWN_AT + (altitude * VIEWS + view) * DIRECTIONS * 3;
                 let found: f64 =

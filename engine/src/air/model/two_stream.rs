@@ -10,7 +10,8 @@
 //! rows and steps that lie many free paths apart A's own error outweighs what the solution lacks, and its share tends to nothing.
 
 use super::forward::Truncated;
-use super::orders::{ALTITUDES, SUNS, SunMap, altitude_m, row3, step_at};
+use super::levels::Levels;
+use super::orders::{ALTITUDES, SUNS, SunMap, row3, step_at};
 use super::sun_map::dip;
 use crate::air::{Class, Medium};
 use core::f64::consts::PI;
@@ -219,13 +220,13 @@ fn between(n: usize, at: impl Fn(usize) -> f64, x: f64) -> (usize, f64) {
 /// The solution as the orders begin with it: [`SEED_ROWS`].
 pub(super) fn rows(column: &Column<'_>) -> Vec<[f32; 4]> {
     let medium = column.medium;
-    let map = SunMap::new(medium);
+    let (map, levels) = (SunMap::new(medium), Levels::new(medium));
     let suns: Vec<f64> = (0..SUNS).map(|k| map.mu(dip(medium.bottom_radius_m, 0.0), k)).collect();
     let solutions: Vec<Solution> = suns.iter().map(|mu| column.under(*mu)).collect();
     let mut rows = Vec::with_capacity(SEED_ROWS);
     for part in 0..2 {
         for row in 0..ALTITUDES {
-            let altitude_m = altitude_m(medium, row);
+            let altitude_m = levels.altitude_m(row);
             let dip = dip(medium.bottom_radius_m, altitude_m);
             for k in 0..SUNS {
                 let (i, f) = between(SUNS, |i| suns[i], map.mu(dip, k));
