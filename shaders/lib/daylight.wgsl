@@ -17,6 +17,13 @@ struct Daylight {
     up: vec3<f32>,   // zenith at the point
 }
 
+// Albedo of a body's ground. A world's own albedo is that of the whole, clouds and all; under air that tells of its ground the ground is as bright
+// as that air is lit by it.
+fn ground_albedo(body: Body, air: Air) -> vec3<f32> {
+    let told = body.ids.z >= 0 && any(air.albedo.rgb > vec3<f32>(0.0));
+    return select(body.albedo.rgb, air.albedo.rgb, told);
+}
+
 // `point`: metres from the camera. `air`: airs.list[slot] where the body has one, any otherwise.
 fn daylight(
     body: Body, star: vec4<f32>, point: vec3<f32>,

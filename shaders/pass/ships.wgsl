@@ -103,7 +103,8 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
         // The lit ground beneath the ship: Lambert, under its own daylight.
         let foot = in.point - up * max(altitude_of(body, in.point), 0.0);
         let below = daylight(body, frame.star, foot, airs.list[u32(max(body.ids.z, 0))], transmittance, irradiance, refracted, linear);
-        let ground = body.albedo.rgb / PI * body.illuminance.rgb * (below.sun * sun_cosine(dot(up, body.sun.xyz), body.sun.w) + below.sky);
+        let bright = ground_albedo(body, airs.list[u32(max(body.ids.z, 0))]);
+        let ground = bright / PI * body.illuminance.rgb * (below.sun * sun_cosine(dot(up, body.sun.xyz), body.sun.w) + below.sky);
         ambient += PI * ground * sphere_form_factor(sine, dot(n, -up));
         // Ground and sky mirrored in the hull.
         let facing = dot(reflected, -up) - sqrt(1.0 - sine * sine);

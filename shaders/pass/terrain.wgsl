@@ -186,7 +186,7 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
     // Not the anisotropic sampler of the maps: with an explicit level, software drivers take hundreds of taps for it.
     let mapped = textureSampleLevel(albedo_map, linear, uv, max(lod, 0.0)).rgb;
     let night = lamps(textureSampleLevel(night_map, linear, uv, max(lod, 0.0)).rgb);
-    let tint = select(body.albedo.rgb, mapped, paint.kind.w > 0u);
+    let tint = select(ground_albedo(body, airs.list[u32(max(body.ids.z, 0))]), mapped, paint.kind.w > 0u);
     let slope = length(gradient);
     let near = 1.0 - smoothstep(2.0e4, 4.0e5, distance);
 

@@ -1,5 +1,5 @@
 //! Where rays of sight end in `shaders/lib/sky_pixel.wgsl`: between the datum's horizon and that of ground which lies deeper nothing is drawn,
-//! and no datum may end a ray there; a dark band along the plains of Mars came of that.
+//! and no datum may end a ray there; a dark band along the plains of Mars came of that. Also how bright the ground is that ends them.
 //!
 //! Not here: what is found along them (`sky.rs`, `sky_orders.rs`).
 
@@ -79,4 +79,27 @@ fn over_deep_ground_the_datum_ends_no_ray_that_a_picture_left_open() {
         assert!((found / wanted - 1.0).abs() < 1e-3, "{question:?}: {found}, {wanted}");
     }
     assert!(wanted[2] > 5.0 * wanted[3]);
+}
+
+#[test]
+fn ground_under_air_is_as_bright_as_that_air_takes_it_for() {
+    // What is drawn of the ground of Venus is not what its clouds throw back; without air, or where air says nothing, a world's own albedo counts.
+    let ask = "
+@group(0) @binding(0) var<storage, read> given: array<vec4<f32>>;
+@group(0) @binding(1) var<storage, read_write> found: array<vec4<f32>>;
+@compute @workgroup_size(64)
+fn ask(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x >= arrayLength(&given) { return; }
+    var body: Body;
+    var air: Air;
+    body.albedo = vec4<f32>(0.76, 0.69, 0.56, 0.0);
+    body.ids.z = i32(given[id.x].w);
+    air.albedo = vec4<f32>(given[id.x].rgb, 0.5);
+    found[id.x] = vec4<f32>(ground_albedo(body, air), 0.0);
+}";
+    let told = [0.15, 0.1, 0.06];
+    let found =
+        tests::ask_shader("lib/daylight.wgsl", ask, "ask", &[[0.15, 0.1, 0.06, 3.0], [0.15, 0.1, 0.06, -1.0], [0.0, 0.0, 0.0, 0.0]]);
+    let rgb = |i: usize| [found[i][0], found[i][1], found[i][2]];
+    assert_eq!([rgb(0), rgb(1), rgb(2)], [told, [0.76, 0.69, 0.56], [0.76, 0.69, 0.56]]);
 }
