@@ -21,7 +21,7 @@
 use super::forward::Truncated;
 use super::levels::Levels;
 use super::paths::{self, Matter};
-use super::peaks::{self, Around};
+use super::peaks::{Around, Lobe};
 use super::sun_map::dip;
 use super::two_stream::{self, Column};
 use crate::air::{Class, Classes, Medium};
@@ -270,7 +270,7 @@ fn kernel_rows(
 ) {
     const AZIMUTHS: usize = 24;
     let used: Vec<_> = classes.iter().zip(shares).filter(|(_, share)| share.max_element() > 1e-6).collect();
-    let rings: Vec<_> = used.iter().map(|((class, truncated), _)| peaks::weights(class, truncated)).collect();
+    let lobes: Vec<_> = used.iter().map(|((class, truncated), _)| Lobe::new(class, truncated)).collect();
     let modes: Vec<(f64, [f64; MODES])> = (0..AZIMUTHS)
         .map(|i| {
             let turn = PI * (i as f64 + 0.5) / AZIMUTHS as f64;
@@ -279,31 +279,33 @@ fn kernel_rows(
         .collect();
     for (view, around) in around.iter().enumerate() {
         let cosine = view_cosine(view);
-        let [mut kernels, mut peaks] = [(); 2].map(|()| vec![[DVec3::ZERO; MODES]; directions.len()]);
-        for (((class, truncated), share), rings) in used.iter().zip(&rings) {
+        let mut kernels = vec![[[DVec3::ZERO; MODES]; 2]; directions.len()];
+        for (((class, truncated), share), lobe) in used.iter().zip(&lobes) {
+            let (foot, with_peak) = lobe.as_ref().map_or((truncated.cap, 0.0), |lobe| (lobe.foot, lobe.light));
             let mut found = vec![[0.0; MODES]; directions.len()];
             for (direction, found) in directions.iter().zip(&mut found) {
                 let across = ((1.0 - cosine * cosine) * (1.0 - direction.cosine * direction.cosine)).max(0.0).sqrt();
                 for (turn, modes) in &modes {
                     let mu = (cosine * direction.cosine + across * turn).clamp(-1.0, 1.0);
-                    let value = direction.weight * class.value(mu).min(truncated.cap);
+                    let value = direction.weight * class.value(mu).min(foot);
                     found.iter_mut().zip(modes).for_each(|(sum, m)| *sum += value * m);
                 }
             }
             // The sums over directions are not exact: all the light is kept by a factor.
-            let left = truncated.left / found.iter().map(|f| f[0]).sum::<f64>().max(1e-9);
-            let add = |to: &mut [[DVec3; MODES]], of: &[[f64; MODES]], by: f64| {
-                to.iter_mut().zip(of).for_each(|(to, of)| to.iter_mut().zip(of).for_each(|(sum, x)| *sum += *share * (by * x)));
-            };
-            add(&mut kernels, &found, left);
-            if truncated.share > 0.0 {
-                add(&mut peaks, &peaks::kernel(around, rings, directions, horizon), 1.0);
+            let rest = (truncated.left + truncated.share - with_peak).max(0.0) / found.iter().map(|f| f[0]).sum::<f64>().max(1e-9);
+            let lobes = lobe.as_ref().map(|lobe| lobe.kernel(around, directions, horizon));
+            for (i, (kernels, found)) in kernels.iter_mut().zip(&found).enumerate() {
+                for (k, kernel) in kernels.iter_mut().enumerate() {
+                    for (m, sum) in kernel.iter_mut().enumerate() {
+                        *sum += *share * (rest * found[m] + lobes.as_ref().map_or(0.0, |lobes| lobes[i][k][m]));
+                    }
+                }
             }
         }
         let channels = |modes: [DVec3; MODES]| [0, 1, 2].map(|c| modes.map(|x| if x[c].is_finite() { narrow(x[c]) } else { 0.0 }));
-        for (kernel, peak) in kernels.into_iter().zip(peaks) {
-            next.extend(channels(kernel));
-            drawn.extend(channels(core::array::from_fn(|m| kernel[m] + peak[m])));
+        for [without, with] in kernels {
+            next.extend(channels(without));
+            drawn.extend(channels(with));
         }
     }
 }

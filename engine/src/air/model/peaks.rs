@@ -1,22 +1,27 @@
-//! Forward peaks ([`super::forward`]) put back into what is drawn of the further orders ([`super::orders`]).
+//! Forward lobes in the kernels of the further orders ([`super::orders`]).
 //!
-//! The directions from an altitude lie wider apart than a peak is: a sum over them would see it or not, as they fall. The integral over the peak is
-//! taken instead, point by point about the view, of light that runs evenly from direction to direction and never across the horizon.
+//! The directions from an altitude lie wider apart than a lobe's middle is: a sum over them would see it or not, as they fall. The integral over the lobe
+//! is taken instead, point by point about the view, of light that runs evenly from direction to direction and never across the horizon. So the
+//! peaks of [`super::forward`] are put back into what is drawn, too.
 
-use super::forward::{EDGE, Truncated};
+use super::forward::Truncated;
 use super::orders::{DOWN, Direction, MODES, UP};
 use crate::air::Class;
 use core::f64::consts::PI;
 
+/// Half width of a lobe, rad: what a phase function has above its value there.
+const WIDE: f64 = 0.7;
+/// By how much more than there it must have in the middle.
+const SHARP: f64 = 4.0;
 /// Rings about a view, and points of half a ring.
-const RINGS: usize = 10;
+const RINGS: usize = 14;
 /// See [`RINGS`].
-const POINTS: usize = 10;
+const POINTS: usize = 12;
 
-/// Angle of a ring from the view, rad: by squares, dense where a peak is.
+/// Angle of a ring from the view, rad: by squares, dense in a lobe's middle.
 fn ring(i: usize) -> (f64, f64) {
     let x = (i as f64 + 0.5) / RINGS as f64;
-    (EDGE * x * x, x)
+    (WIDE * x * x, x)
 }
 
 /// Points about a view: zenith angle, and the modes of the azimuth from the view.
@@ -45,39 +50,65 @@ impl Around {
     }
 }
 
-/// Weights of the rings of a class's peak; their sum over all points is its share.
-pub(super) fn weights(class: &Class, truncated: &Truncated) -> [f64; RINGS] {
-    if truncated.share == 0.0 {
-        return [0.0; RINGS];
-    }
-    let one = |i: usize| {
-        let (angle, x) = ring(i);
-        let (sin, mu) = libm::sincos(angle);
-        (class.value(mu) - truncated.cap).max(0.0) * sin * x
-    };
-    let all: [f64; RINGS] = core::array::from_fn(one);
-    let sum: f64 = all.iter().sum();
-    all.map(|x| x * truncated.share / (sum * POINTS as f64).max(1e-300))
+/// The lobe of a class: the value above which it begins, sr⁻¹, its integral with the peak, and the weights of the rings without it and with it.
+pub(super) struct Lobe {
+    pub(super) foot: f64,
+    pub(super) light: f64,
+    weights: [[f64; RINGS]; 2],
 }
 
-/// How much of the light of each direction, by its modes in the azimuth, a peak turns towards a view; `horizon`: its zenith angle.
-pub(super) fn kernel(around: &Around, weights: &[f64; RINGS], directions: &[Direction], horizon: f64) -> Vec<[f64; MODES]> {
-    let mut out = vec![[0.0; MODES]; directions.len()];
-    for ((zenith, modes), weight) in around.0.iter().zip(weights.iter().flat_map(|w| [*w; POINTS])) {
-        let (from, count, width) = if *zenith < horizon { (0, UP, horizon) } else { (UP, DOWN, PI - horizon) };
-        let x = ((zenith - horizon).abs() / width).sqrt();
-        let side = &directions[from..from + count];
-        let above = side.partition_point(|d| d.part < x);
-        let (low, f) = match (above.checked_sub(1), side.get(above)) {
-            (Some(low), Some(high)) => (low, (x - side[low].part) / (high.part - side[low].part)),
-            (None, _) => (0, 0.0),
-            (Some(low), None) => (low, 0.0),
+impl Lobe {
+    /// Of a class; none of one that is even enough for a sum over directions.
+    pub(super) fn new(class: &Class, truncated: &Truncated) -> Option<Self> {
+        let foot = class.value(libm::cos(WIDE)).min(truncated.cap);
+        if class.value(1.0) < SHARP * foot {
+            return None;
+        }
+        // Per dx, of an angle WIDE · x³, and of a ring's.
+        let above = |angle: f64, k: usize| {
+            let (sin, mu) = libm::sincos(angle);
+            let value = class.value(mu);
+            (if k == 0 { value.min(truncated.cap) } else { value } - foot).max(0.0) * sin
         };
-        for (to, share) in [(low, 1.0 - f), (low + 1, f)] {
-            if share > 0.0 {
-                out[from + to].iter_mut().zip(modes).for_each(|(sum, m)| *sum += weight * share * m);
+        let fine = 256;
+        let light = [0, 1].map(|k| {
+            let part = |i: i32| {
+                let x = (f64::from(i) + 0.5) / f64::from(fine);
+                above(WIDE * x * x * x, k) * 6.0 * PI * WIDE * x * x / f64::from(fine)
+            };
+            (0..fine).map(part).sum::<f64>()
+        });
+        let weights = [0, 1].map(|k| {
+            let all: [f64; RINGS] = core::array::from_fn(|i| above(ring(i).0, k) * ring(i).1);
+            let sum = all.iter().sum::<f64>() * POINTS as f64;
+            all.map(|x| x * light[k] / sum.max(1e-300))
+        });
+        Some(Self { foot, light: light[1], weights })
+    }
+
+    /// How much of the light of each direction, by its modes in the azimuth, a lobe turns towards a view, without and with its peak; `horizon`:
+    /// its zenith angle.
+    pub(super) fn kernel(&self, around: &Around, directions: &[Direction], horizon: f64) -> Vec<[[f64; MODES]; 2]> {
+        let mut out = vec![[[0.0; MODES]; 2]; directions.len()];
+        for (i, (zenith, modes)) in around.0.iter().enumerate() {
+            let weights = self.weights.map(|w| w[i / POINTS]);
+            let (from, count, width) = if *zenith < horizon { (0, UP, horizon) } else { (UP, DOWN, PI - horizon) };
+            let x = ((zenith - horizon).abs() / width).sqrt();
+            let side = &directions[from..from + count];
+            let above = side.partition_point(|d| d.part < x);
+            let (low, f) = match (above.checked_sub(1), side.get(above)) {
+                (Some(low), Some(high)) => (low, (x - side[low].part) / (high.part - side[low].part)),
+                (None, _) => (0, 0.0),
+                (Some(low), None) => (low, 0.0),
+            };
+            for (to, share) in [(low, 1.0 - f), (low + 1, f)] {
+                if share > 0.0 {
+                    for (sums, weight) in out[from + to].iter_mut().zip(weights) {
+                        sums.iter_mut().zip(modes).for_each(|(sum, m)| *sum += weight * share * m);
+                    }
+                }
             }
         }
+        out
     }
-    out
 }
