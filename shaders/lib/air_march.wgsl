@@ -85,12 +85,15 @@ fn air_march(
     var out = AirLight(vec3<f32>(0.0), vec3<f32>(1.0));
     var depth = vec3<f32>(0.0);
     var begin = 0.0;
-    for (var k = 0u; k < 24u && begin < end; k++) {
+    // Loops ask at their ends: a processor that stands in for a GPU goes once more through one that asks before, with nothing to do.
+    var k = 0u;
+    loop {
         let next = air_next_cut(air, path, begin, end, vec4<f32>(night, -1.0, -1.0), shade.cuts);
         let middle = 0.5 * (begin + next);
         let dark = middle > night.x && middle < night.y;
         let panels = air_panels(air, media, slot, along, begin, next, select(most, (most + 1u) / 2u, dark));
-        for (var i = 0u; i < panels; i++) {
+        var i = 0u;
+        loop {
             let n = air_nodes(air, path, begin, next, i, panels);
             // The rings' free fractions from the two Gauss points of the panel, evenly between and beyond: their integral is exact to third order.
             var around: mat2x4<f32>;
@@ -109,7 +112,8 @@ fn air_march(
             let turned = mat4x3<f32>(m0.scattering * along.aureole, m1.scattering * along.aureole, m2.scattering * along.aureole, m3.scattering * along.aureole);
             let all = mat4x3<f32>(m0.scattering * ONES, m1.scattering * ONES, m2.scattering * ONES, m3.scattering * ONES);
             var before = vec3<f32>(0.0);
-            for (var j = 0u; j < 4u; j++) {
+            var j = 0u;
+            loop {
                 let one = select(vec4<f32>(0.0), ONES, vec4<u32>(0u, 1u, 2u, 3u) == vec4<u32>(j));
                 let s = dot(n.s, one);
                 var eclipse = NO_ECLIPSE;
@@ -125,10 +129,22 @@ fn air_march(
                 out.radiance += (dot(n.span * GAUSS_WEIGHT, one) * exp(-depth - before)) * seen
                     * air_source(air, transmittance, orders, linear, slot, along, sun, phased * one, turned * one, all * one, s, dot(n.altitude, one), eclipse);
                 before += own;
+                j++;
+                if j >= 4u {
+                    break;
+                }
             }
             depth += depths * GAUSS_WEIGHT;
+            i++;
+            if i >= panels {
+                break;
+            }
         }
         begin = next;
+        k++;
+        if k >= 24u || begin >= end {
+            break;
+        }
     }
     out.transmittance = exp(-depth);
     return out;

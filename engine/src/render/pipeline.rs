@@ -109,6 +109,8 @@ pub struct PipelineKind<'a> {
     pub cull: Option<wgpu::Face>,
     /// Entry point of the fragment shader.
     pub entry: &'a str,
+    /// Entry point of the vertex shader.
+    pub vertex: &'a str,
     /// Colour targets, all of one format.
     pub colours: usize,
     /// Values of `override` constants.
@@ -160,6 +162,7 @@ impl<'a> PipelineKind<'a> {
             depth: Some(true),
             cull: None,
             entry: "fragment",
+            vertex: "vertex",
             colours: 1,
             constants: &[],
             stencil: None,
@@ -182,6 +185,7 @@ impl<'a> PipelineKind<'a> {
             depth: None,
             cull: None,
             entry: "fragment",
+            vertex: "vertex",
             colours: 1,
             constants: &[],
             stencil: None,
@@ -203,7 +207,7 @@ impl<'a> PipelineKind<'a> {
             layout: Some(&layout),
             vertex: wgpu::VertexState {
                 module: self.module,
-                entry_point: Some("vertex"),
+                entry_point: Some(self.vertex),
                 compilation_options: compilation_options.clone(),
                 buffers: self.buffers,
             },

@@ -256,33 +256,37 @@ impl FrameContext<'_> {
     /// Begins a full-screen pass into one colour view, without depth; group 0 is bound. `load: false` leaves the old contents undefined.
     pub fn draw_full_screen<'e>(&'e mut self, name: &'static str, view: &wgpu::TextureView, load: bool) -> wgpu::RenderPass<'e> {
         let ops = if load { wgpu::LoadOp::Load } else { wgpu::LoadOp::Clear(wgpu::Color::BLACK) };
-        let mut pass = self.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some(name),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations { load: ops, store: wgpu::StoreOp::Store },
-            })],
-            timestamp_writes: self.timer.as_mut().and_then(|t| t.render(name)),
-            ..Default::default()
-        });
-        pass.set_bind_group(0, &self.shared.frame_group, &[]);
-        pass
+        self.draw_views(name, &[view], ops, None)
     }
 
-    /// Begins a pass into two colour views of one size, without depth and with their old contents; group 0 is bound. `stencil`: a stencil of
-    /// that size, emptied, with 1 for reference.
-    pub fn draw_pair<'e>(
+    /// Begins a pass into two colour views of one size, without depth and with their old contents or cleared; group 0 is bound.
+    pub fn draw_pair<'e>(&'e mut self, name: &'static str, views: [&wgpu::TextureView; 2], load: bool) -> wgpu::RenderPass<'e> {
+        let ops = if load { wgpu::LoadOp::Load } else { wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT) };
+        self.draw_views(name, &views, ops, None)
+    }
+
+    /// Begins a pass into one colour view that marks what it has drawn in a stencil of the same size, emptied, with 1 for reference; group 0 is bound.
+    pub fn draw_marked<'e>(
         &'e mut self,
         name: &'static str,
-        views: [&wgpu::TextureView; 2],
+        view: &wgpu::TextureView,
+        load: bool,
+        stencil: &wgpu::TextureView,
+    ) -> wgpu::RenderPass<'e> {
+        let ops = if load { wgpu::LoadOp::Load } else { wgpu::LoadOp::Clear(wgpu::Color::BLACK) };
+        self.draw_views(name, &[view], ops, Some(stencil))
+    }
+
+    fn draw_views<'e>(
+        &'e mut self,
+        name: &'static str,
+        views: &[&wgpu::TextureView],
+        load: wgpu::LoadOp<wgpu::Color>,
         stencil: Option<&wgpu::TextureView>,
     ) -> wgpu::RenderPass<'e> {
-        let attachments = views.map(|view| {
-            let ops = wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store };
-            Some(wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops })
-        });
+        let ops = wgpu::Operations { load, store: wgpu::StoreOp::Store };
+        let attach = |view| Some(wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops });
+        let attachments: Vec<_> = views.iter().copied().map(attach).collect();
         let mut pass = self.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some(name),
             color_attachments: &attachments,

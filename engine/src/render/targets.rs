@@ -9,16 +9,18 @@ use wgpu::TextureUsages as Use;
 pub const HDR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 /// Format of the depth target: infinite reversed-Z, cleared to 0, compared with Greater.
 pub const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+/// Format of [`SkyLevel::plan`].
+pub const SKY_PLAN: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
 /// Levels of the bloom chain at most.
 pub const BLOOM_LEVELS: u32 = 7;
 
-/// Light of an air at every so-manieth pixel of every so-manieth row.
+/// Light of an air at every so-manieth pixel of every so-manieth row, and at one beyond the last.
 #[derive(Debug)]
 pub struct SkyLevel {
     /// Radiance, pre-exposed, and depth; transmittance. What the channels hold: `shaders/pass/sky_physical.wgsl`.
     pub light: [Texture; 2],
-    /// Marks what has been found while the level is drawn.
-    pub stencil: Texture,
+    /// What becomes of the cell between a texel and the next ones.
+    pub plan: Texture,
 }
 
 /// The table.
@@ -30,8 +32,10 @@ pub struct Targets {
     pub opaque: Texture,
     /// The same behind an air that covers the whole picture; written by the sky pass.
     pub aerial: Texture,
-    /// Light of an air at every pixel, and at every second, fourth and eighth of every such row; the sky pass's own.
-    pub sky: [SkyLevel; 4],
+    /// Light of an air at every second and every eighth pixel; the sky pass's own.
+    pub sky: [SkyLevel; 2],
+    /// Marks what has been drawn of an air.
+    pub sky_stencil: Texture,
     /// Depth of opaque things.
     pub depth: Texture,
     /// Bloom chain: level 0 is half the picture.
@@ -51,13 +55,14 @@ impl Targets {
         Self {
             size,
             opaque: Texture::new(d, "hdr opaque", size, HDR, hdr),
-            sky: [1, 2, 4, 8].map(|rate| {
-                let part = size.map(|n: u32| n.div_ceil(rate).max(1));
+            sky: [2, 8].map(|rate| {
+                let part = size.map(|n: u32| n.div_ceil(rate).max(1) + 1);
                 SkyLevel {
                     light: ["sky radiance", "sky transmittance"].map(|name| Texture::new(d, name, part, HDR, hdr)),
-                    stencil: Texture::new(d, "sky stencil", part, Stencil::FORMAT, Use::RENDER_ATTACHMENT),
+                    plan: Texture::new(d, "sky plan", part, SKY_PLAN, hdr),
                 }
             }),
+            sky_stencil: Texture::new(d, "sky stencil", size, Stencil::FORMAT, Use::RENDER_ATTACHMENT),
             aerial: Texture::new(d, "hdr aerial", size, HDR, hdr),
             depth: Texture::new(d, "depth", size, DEPTH, hdr),
             bloom_levels: (0..levels).map(|i| bloom.level_view(i)).collect(),
@@ -65,13 +70,8 @@ impl Targets {
         }
     }
 
-    /// That of [`Targets::sky`] of every `rate`-th pixel: 1, 2, 4 or 8.
+    /// That of [`Targets::sky`] of every `rate`-th pixel: 2 or 8.
     pub const fn sky_at(&self, rate: u32) -> &SkyLevel {
-        match rate {
-            8 => &self.sky[3],
-            4 => &self.sky[2],
-            2 => &self.sky[1],
-            _ => &self.sky[0],
-        }
+        if rate == 8 { &self.sky[1] } else { &self.sky[0] }
     }
 }

@@ -14,7 +14,7 @@ use super::RenderError;
 use super::maps::MapStore;
 use super::pass::air_tables::AirBaker;
 use super::pass::sky::choose::Rect;
-use super::pass::sky::{Draw, Painter, Parts, painter, picture_layout};
+use super::pass::sky::{Draw, Painter, Parts, paint, painter, picture_layout};
 use super::pass::smooth_body::SmoothBody;
 use super::pass::{baseline_bruneton, baseline_hillaire_sky};
 use super::report::FrameReport;
@@ -173,6 +173,8 @@ impl<'a> SkyBench<'a> {
         self.shared.write_exposure(gpu, &ExposureUniform::starting(PRE));
         let Some(body) = scene.bodies.first() else { return Err(RenderError::NothingDrawn) };
         let mut settings = prepared.painter.settings_in(&scene, body, &prepared.air);
+        let rect = Rect::whole(self.targets.size);
+        prepared.painter.place(&mut settings, rect);
         if let Some(agree) = setting.agree {
             settings[0][3] = agree;
         }
@@ -205,15 +207,8 @@ impl<'a> SkyBench<'a> {
                 BindGroupEntry { binding: 2, resource: self.uniform.buffer.as_entire_binding() },
             ],
         });
-        let rect = Rect::whole(self.targets.size);
-        prepared.painter.before(&mut f, &Draw { body, air: &prepared.air, rect, light: &light, picture: &picture, held: false });
-        let mut pass = f.draw_full_screen("sky", &self.targets.aerial.view, false);
-        pass.set_pipeline(prepared.painter.pipeline());
-        pass.set_bind_group(1, &light, &[]);
-        pass.set_bind_group(2, &picture, &[]);
-        pass.set_bind_group(3, prepared.painter.group(0), &[]);
-        pass.draw(0..3, 0..1);
-        drop(pass);
+        let draw = Draw { body, air: &prepared.air, rect, light: &light, picture: &picture, held: false };
+        paint(&mut f, &mut *prepared.painter, &draw, 0, &self.targets.aerial.view, false);
         let begun = self.clock.map(|now| now());
         f.submit();
         gpu.wait()?;

@@ -54,7 +54,21 @@ pub trait Painter: Send {
     fn before(&mut self, f: &mut FrameContext<'_>, draw: &Draw<'_>) {
         let _ = (f, draw);
     }
-    /// What draws it then.
+    /// Where in the picture it will be drawn, for models whose shader asks.
+    fn place(&self, settings: &mut SkySettings, rect: Rect) {
+        let _ = (settings, rect);
+    }
+    /// Whether the pass that it draws in then marks in a stencil what has been drawn.
+    fn marks(&self) -> bool {
+        false
+    }
+    /// Draws it then: groups 0 to 2 are bound, pixels outside of what its shell covers are cut off. `id` is [`Body::id`].
+    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, id: u16) {
+        pass.set_pipeline(self.pipeline());
+        pass.set_bind_group(3, self.group(id), &[]);
+        pass.draw(0..3, 0..1);
+    }
+    /// What draws it in one draw.
     fn pipeline(&self) -> &wgpu::RenderPipeline {
         &self.kind().pipeline
     }
@@ -176,7 +190,11 @@ pub fn painter(parts: &Parts<'_>, model: &Model) -> Result<Box<dyn Painter>, Ren
 pub fn picture_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
     gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some("group 2: picture"),
-        entries: &[texture_entry(0, wgpu::TextureViewDimension::D2), depth_entry(1), storage_entry(2)],
+        entries: &[
+            texture_entry(0, wgpu::TextureViewDimension::D2),
+            depth_entry(1),
+            wgpu::BindGroupLayoutEntry { visibility: wgpu::ShaderStages::all(), ..storage_entry(2) },
+        ],
     })
 }
 
@@ -293,7 +311,9 @@ impl Sky {
             let Some(body) = f.scene.bodies.get(choice.body as usize) else { continue };
             let holder = choice.held_by.and_then(|by| u32::try_from(by).ok()).filter(|_| matches!(body.surface, Surface::Nothing));
             let ids = holder.map_or([choice.body, self.steps, 0, 0], |by| [choice.body, self.steps, SKY_HELD, by]);
-            uniform.write(&f.gpu.queue, &SkyUniform { ids, settings: painter.settings_in(f.scene, body, air) });
+            let mut settings = painter.settings_in(f.scene, body, air);
+            painter.place(&mut settings, choice.rect);
+            uniform.write(&f.gpu.queue, &SkyUniform { ids, settings });
             let targets = f.targets;
             let (current, other) = if self.in_aerial { (&targets.aerial, &targets.opaque) } else { (&targets.opaque, &targets.aerial) };
             let (from, into) = if choice.rect == whole {
@@ -306,15 +326,8 @@ impl Sky {
             let picture = self.picture_group(f, &from.view, uniform);
             let held = matches!(body.surface, Surface::Nothing) && self.record_front(f, light, &from.view, i);
             let Some(painter) = self.painters.get_mut(painter_of(&air.model)) else { continue };
-            painter.before(f, &Draw { body, air, rect: choice.rect, light, picture: &picture, held });
-            let mut pass = f.draw_full_screen("sky", &into.view, choice.rect != whole);
-            pass.set_pipeline(painter.pipeline());
-            pass.set_bind_group(1, light, &[]);
-            pass.set_bind_group(2, &picture, &[]);
-            pass.set_bind_group(3, painter.group(id), &[]);
-            let Rect { left, top, width, height } = choice.rect;
-            pass.set_scissor_rect(left, top, width, height);
-            pass.draw(0..3, 0..1);
+            let draw = Draw { body, air, rect: choice.rect, light, picture: &picture, held };
+            paint(f, &mut **painter, &draw, id, &into.view, choice.rect != whole);
         }
         if self.in_aerial { f.targets.aerial.view.clone() } else { f.targets.opaque.view.clone() }
     }
@@ -336,7 +349,7 @@ impl Sky {
         });
         let rect = choice.rect.every(FRONT_RATE, f.targets.size);
         let views = f.targets.sky_at(FRONT_RATE).light.each_ref().map(|t| &t.view);
-        let mut pass = f.draw_pair("sky", views, None);
+        let mut pass = f.draw_pair("sky", views, true);
         pass.set_pipeline(pipeline);
         pass.set_bind_group(1, light, &[]);
         pass.set_bind_group(2, &picture, &[]);
@@ -362,6 +375,18 @@ impl Sky {
     pub const fn in_aerial(&self) -> bool {
         self.in_aerial
     }
+}
+
+/// Draws one air into a picture, over its old contents or in their place.
+pub fn paint(f: &mut FrameContext<'_>, painter: &mut dyn Painter, draw: &Draw<'_>, id: u16, into: &wgpu::TextureView, over: bool) {
+    painter.before(f, draw);
+    let stencil = &f.targets.sky_stencil.view;
+    let mut pass = if painter.marks() { f.draw_marked("sky", into, over, stencil) } else { f.draw_full_screen("sky", into, over) };
+    pass.set_bind_group(1, draw.light, &[]);
+    pass.set_bind_group(2, draw.picture, &[]);
+    let Rect { left, top, width, height } = draw.rect;
+    pass.set_scissor_rect(left, top, width, height);
+    painter.draw(&mut pass, id);
 }
 
 /// The air of a chosen body, and the body's id.

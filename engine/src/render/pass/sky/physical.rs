@@ -1,9 +1,11 @@
 //! How the model `physical` draws: `shaders/lib/physical.wgsl`, with the air tables of group 1.
 //!
-//! The march is made at every eighth pixel of every eighth row first, then at every fourth, second and one, where a pixel between four that agree
-//! takes their mean and any other marches by itself. Where another world's shadow may fall, which may be small, and where density jumps, the
-//! first is every second. A forced frame marches at every pixel: the two differ by the bound that is stated at [`AGREE`].
+//! The march is made at every eighth pixel of every eighth row first. Cells between four of those that are even enough are drawn from them by
+//! cubic interpolation; at the corners of the others' fourths the march is made again, and so on to every second pixel; what no cell draws is marched
+//! pixel by pixel. Where another world's shadow may fall, which may be small, and where density jumps, the first is every second. A forced frame
+//! marches at every pixel: the two differ by the bound that is stated at [`AGREE`].
 
+use super::choose::Rect;
 use super::{Draw, Painter, PainterKind, Parts, no_settings};
 use crate::air::{Air, Classes, Medium};
 use crate::gpu::Gpu;
@@ -11,16 +13,16 @@ use crate::gpu::texture::Texture;
 use crate::render::RenderError;
 use crate::render::pipeline::{PipelineKind, Stencil, texture_entry};
 use crate::render::shared::FrameContext;
-use crate::render::targets::HDR;
+use crate::render::targets::{HDR, SKY_PLAN, SkyLevel};
 use crate::scene::Body;
 use crate::scene::gpu_data::{SkySettings, vec4};
 use crate::space::relative::narrow3;
 use glam::{DVec3, Vec3};
 use wgpu::{BindGroupEntry, BindingResource};
 
-/// Of its colour, how much a pixel may differ from those around it and still take their mean. What varies evenly by this much is then right to an
-/// eighth of its square, 3e-3; the bend of an edge to a quarter, 4 %, on a line one pixel wide.
-pub const AGREE: f32 = 0.16;
+/// Of its light, how much a pixel may err by interpolation, as it is found from differences of fourth order: a fifth of it where light is smooth,
+/// three times it at a kink on a line one pixel wide.
+pub const AGREE: f32 = 0.003;
 
 /// What most airs do without: media that are tables, and shadows of other worlds.
 const PLAIN: [(&str, f64); 2] = [("MEDIA_TABLES", 0.0), ("AIR_ECLIPSES", 0.0)];
@@ -34,19 +36,33 @@ pub fn make(parts: &Parts<'_>) -> Result<Box<dyn Painter>, RenderError> {
 struct Rates {
     /// A march at every pixel.
     full: wgpu::RenderPipeline,
-    /// The levels, from the coarsest to every pixel.
-    levels: Vec<Level>,
-    /// The picture from the last of those.
-    lay: wgpu::RenderPipeline,
+    /// Pixels between the rays of the first level; where it is not the second itself, how it is drawn.
+    first: u32,
+    coarse: Option<Coarse>,
+    /// The second level: marches, tells what becomes of its cells, and draws the even ones.
+    march: wgpu::RenderPipeline,
+    plan: wgpu::RenderPipeline,
+    take: wgpu::RenderPipeline,
+    /// Marches at the pixels that no cell has drawn.
+    rest: wgpu::RenderPipeline,
 }
 
-/// One level: of every so-manieth pixel of every so-manieth row.
-struct Level {
-    rate: u32,
-    /// Takes what it can from the level before; not on the first.
-    take: Option<wgpu::RenderPipeline>,
-    /// Marches at what is left.
+/// The pipelines of a first level: marches, tells what becomes of its cells, and draws the even ones.
+struct Coarse {
     march: wgpu::RenderPipeline,
+    plan: wgpu::RenderPipeline,
+    cells: wgpu::RenderPipeline,
+}
+
+/// Pixels between the rays of the second level.
+const FINE: u32 = 2;
+
+/// How the body that is being drawn is drawn.
+enum Chosen {
+    /// A march at every pixel.
+    Full(wgpu::RenderPipeline),
+    /// Draws, one after the other: pipeline, its group 3, count of vertices.
+    Levels(Vec<(wgpu::RenderPipeline, wgpu::BindGroup, u32)>),
 }
 
 /// The painter.
@@ -56,36 +72,43 @@ struct Physical {
     rates: [Rates; 2],
     /// Group 3 where nothing is read from it.
     none: wgpu::BindGroup,
-    /// Group 3 for the body that is being drawn, and its pipeline.
-    chosen: Option<(wgpu::BindGroup, wgpu::RenderPipeline)>,
+    dark: Texture,
+    chosen: Option<Chosen>,
 }
 
 impl Physical {
     fn new(parts: &Parts<'_>) -> Result<Self, RenderError> {
-        let own = [0, 1].map(|i| texture_entry(i, wgpu::TextureViewDimension::D2));
+        let own = [0, 1, 2, 3].map(|i| texture_entry(i, wgpu::TextureViewDimension::D2));
         let kind = PainterKind::new(parts, "pass/sky_physical.wgsl", &own)?;
         let groups = [&parts.shared.frame_layout, &parts.shared.light_layout, parts.picture, &kind.own_layout];
-        let rates = [(&[][..], &[2, 1][..]), (&PLAIN[..], &[8, 4, 2, 1][..])].map(|(constants, levels)| {
-            let plain = PipelineKind { constants, ..PipelineKind::full_screen("sky", &kind.module, &groups, HDR) };
-            let at = |rate: u32, entry, stencil| {
-                let constants = &[constants, &[("RATE", f64::from(rate))]].concat();
-                let kind = PipelineKind::full_screen("sky", &kind.module, &groups, HDR);
-                PipelineKind { entry, colours: 2, constants, stencil, ..kind }.make(parts.gpu)
+        let rates = [(&[][..], FINE), (&PLAIN[..], 8)].map(|(air, first)| {
+            let of = |vertex, entry, colour, numbers: [u32; 3], stencil| {
+                let [rate, into, margin] = numbers.map(f64::from);
+                let own = [("FIRST_RATE", f64::from(first)), ("RATE", rate), ("INTO", into), ("MARGIN", margin)];
+                let constants = &[air, &own].concat();
+                let colours = if entry == "march_level" { 2 } else { 1 };
+                let plain = PipelineKind::full_screen("sky", &kind.module, &groups, colour);
+                PipelineKind { vertex, entry, colours, constants, stencil, ..plain }.make(parts.gpu)
             };
-            let level = |(i, rate): (usize, &u32)| Level {
-                rate: *rate,
-                take: (i > 0).then(|| at(*rate, "take_level", Some(Stencil::Marks))),
-                march: at(*rate, "march_level", (i > 0).then_some(Stencil::Unmarked)),
-            };
+            let coarse = (first != FINE).then(|| Coarse {
+                march: of("vertex", "march_level", HDR, [first, first, 0], None),
+                plan: of("vertex", "plan_level", SKY_PLAN, [first, first, 0], None),
+                cells: of("cell_vertex", "cell", HDR, [first, 1, 0], Some(Stencil::Marks)),
+            });
+            let open = if coarse.is_some() { "open_vertex" } else { "vertex" };
             Rates {
-                full: plain.make(parts.gpu),
-                levels: levels.iter().enumerate().map(level).collect(),
-                lay: PipelineKind { entry: "lay", ..plain }.make(parts.gpu),
+                full: of("vertex", "fragment", HDR, [1, 1, 0], None),
+                first,
+                coarse,
+                march: of(open, "march_level", HDR, [FINE, FINE, 1], None),
+                plan: of(open, "plan_level", SKY_PLAN, [FINE, FINE, 0], None),
+                take: of(open, "take", HDR, [FINE, 1, 0], Some(Stencil::Marks)),
+                rest: of("vertex", "fragment", HDR, [1, 1, 0], Some(Stencil::Unmarked)),
             }
         });
         let dark = Texture::new(&parts.gpu.device, "no air", [1, 1], HDR, wgpu::TextureUsages::TEXTURE_BINDING);
-        let none = group(parts.gpu, &kind.own_layout, [&dark.view; 2]);
-        Ok(Self { kind, rates, none, chosen: None })
+        let none = group(parts.gpu, &kind.own_layout, [&dark.view; 4]);
+        Ok(Self { kind, rates, none, dark, chosen: None })
     }
 }
 
@@ -98,50 +121,99 @@ impl Painter for Physical {
         all[0] = vec4(greatest_extinction(&air.medium), AGREE);
         all
     }
-    fn group(&self, _id: u16) -> &wgpu::BindGroup {
-        self.chosen.as_ref().map_or(&self.none, |c| &c.0)
+    fn place(&self, settings: &mut SkySettings, rect: Rect) {
+        settings[1] = [rect.left, rect.top, rect.left + rect.width, rect.top + rect.height].map(|n| n as f32);
     }
-    fn pipeline(&self) -> &wgpu::RenderPipeline {
-        self.chosen.as_ref().map_or(&self.kind.pipeline, |c| &c.1)
+    fn group(&self, _id: u16) -> &wgpu::BindGroup {
+        &self.none
+    }
+    fn marks(&self) -> bool {
+        matches!(self.chosen, Some(Chosen::Levels(_)))
+    }
+    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, _id: u16) {
+        match &self.chosen {
+            Some(Chosen::Levels(draws)) => {
+                for (pipeline, group, count) in draws {
+                    pass.set_pipeline(pipeline);
+                    pass.set_bind_group(3, group, &[]);
+                    pass.draw(0..*count, 0..1);
+                }
+            }
+            Some(Chosen::Full(pipeline)) => {
+                pass.set_pipeline(pipeline);
+                pass.set_bind_group(3, &self.none, &[]);
+                pass.draw(0..3, 0..1);
+            }
+            None => {}
+        }
     }
     fn before(&mut self, f: &mut FrameContext<'_>, draw: &Draw<'_>) {
         let medium = &draw.air.medium;
         let plain = draw.body.occluders.is_empty() && Classes::of(medium).direct && medium.jumps_m(1).is_empty();
         let rates = &self.rates[usize::from(plain)];
         if f.scene.force.all {
-            self.chosen = Some((self.none.clone(), rates.full.clone()));
+            self.chosen = Some(Chosen::Full(rates.full.clone()));
             return;
         }
-        let mut from = self.none.clone();
-        for level in &rates.levels {
-            let target = f.targets.sky_at(level.rate);
-            let views = target.light.each_ref().map(|t| &t.view);
-            let rect = draw.rect.every(level.rate, f.targets.size);
-            let mut pass = f.draw_pair("sky", views, level.take.as_ref().map(|_| &target.stencil.view));
-            pass.set_bind_group(1, draw.light, &[]);
-            pass.set_bind_group(2, draw.picture, &[]);
-            pass.set_bind_group(3, &from, &[]);
-            pass.set_scissor_rect(rect.left, rect.top, rect.width, rect.height);
-            for pipeline in level.take.iter().chain([&level.march]) {
-                pass.set_pipeline(pipeline);
-                pass.draw(0..3, 0..1);
-            }
-            drop(pass);
-            from = group(f.gpu, &self.kind.own_layout, views);
+        let dark = &self.dark.view;
+        let layout = &self.kind.own_layout;
+        let mut draws = Vec::new();
+        // Of a level: radiance, transmittance, plan.
+        let views = |level: &SkyLevel| [&level.light[0].view, &level.light[1].view, &level.plan.view].map(Clone::clone);
+        let mut first_plan = dark.clone();
+        let mut vertices = 3;
+        if let Some(coarse) = &rates.coarse {
+            let [radiance, transmittance, plan] = views(f.targets.sky_at(rates.first));
+            let rays = texels(draw.rect, rates.first);
+            let cells = Rect { width: rays.width - 1, height: rays.height - 1, ..rays };
+            one(&mut f.draw_pair("sky", [&radiance, &transmittance], true), &coarse.march, draw, &self.none, rays, 3);
+            let from = group(f.gpu, layout, [&radiance, &transmittance, dark, dark]);
+            one(&mut f.draw_full_screen("sky", &plan, true), &coarse.plan, draw, &from, cells, 3);
+            vertices = 6 * cells.width * cells.height;
+            draws.push((coarse.cells.clone(), group(f.gpu, layout, [&radiance, &transmittance, dark, &plan]), vertices));
+            first_plan = plan;
         }
-        self.chosen = Some((from, rates.lay.clone()));
+        let [radiance, transmittance, plan] = views(f.targets.sky_at(FINE));
+        let rays = texels(draw.rect, FINE);
+        let cells = Rect { width: rays.width - 1, height: rays.height - 1, ..rays };
+        let from = group(f.gpu, layout, [dark, dark, dark, &first_plan]);
+        one(&mut f.draw_pair("sky", [&radiance, &transmittance], false), &rates.march, draw, &from, rays, vertices);
+        let from = group(f.gpu, layout, [&radiance, &transmittance, dark, &first_plan]);
+        one(&mut f.draw_full_screen("sky", &plan, false), &rates.plan, draw, &from, cells, vertices);
+        draws.push((rates.take.clone(), group(f.gpu, layout, [&radiance, &transmittance, &plan, &first_plan]), vertices));
+        draws.push((rates.rest.clone(), self.none.clone(), 3));
+        self.chosen = Some(Chosen::Levels(draws));
     }
 }
 
-fn group(gpu: &Gpu, layout: &wgpu::BindGroupLayout, views: [&wgpu::TextureView; 2]) -> wgpu::BindGroup {
-    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("group 3: physical"),
-        layout,
-        entries: &[
-            BindGroupEntry { binding: 0, resource: BindingResource::TextureView(views[0]) },
-            BindGroupEntry { binding: 1, resource: BindingResource::TextureView(views[1]) },
-        ],
-    })
+/// One draw over a part of a level.
+fn one(
+    pass: &mut wgpu::RenderPass<'_>,
+    pipeline: &wgpu::RenderPipeline,
+    draw: &Draw<'_>,
+    own: &wgpu::BindGroup,
+    part: Rect,
+    vertices: u32,
+) {
+    pass.set_pipeline(pipeline);
+    pass.set_bind_group(1, draw.light, &[]);
+    pass.set_bind_group(2, draw.picture, &[]);
+    pass.set_bind_group(3, own, &[]);
+    pass.set_scissor_rect(part.left, part.top, part.width, part.height);
+    pass.draw(0..vertices, 0..1);
+}
+
+/// The texels of a level that pixels of `rect` lie between.
+fn texels(rect: Rect, rate: u32) -> Rect {
+    let part = |from: u32, len: u32| (from / rate, (from + len).saturating_sub(1) / rate + 2 - from / rate);
+    let ((left, width), (top, height)) = (part(rect.left, rect.width), part(rect.top, rect.height));
+    Rect { left, top, width, height }
+}
+
+fn group(gpu: &Gpu, layout: &wgpu::BindGroupLayout, views: [&wgpu::TextureView; 4]) -> wgpu::BindGroup {
+    let entry = |(binding, view)| BindGroupEntry { binding, resource: BindingResource::TextureView(view) };
+    let entries: Vec<_> = (0..).zip(views).map(entry).collect();
+    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("group 3: physical"), layout, entries: &entries })
 }
 
 /// The greatest extinction between datum and top, m⁻¹.
