@@ -1,6 +1,6 @@
 // The model `physical` along a ray: the march of lib/air_march.wgsl, from where the air begins to what is seen.
-// Numbers of Sky: [0].rgb the greatest extinction between datum and top, m⁻¹; [0].a: by how much of its colour a pixel may differ from those
-// around it and still take their mean. Bound by pass/sky_physical.wgsl.
+// Numbers of Sky: [0].rgb the greatest extinction between datum and top, m⁻¹; [0].a: by how much of its light a pixel may err by interpolation; [1]: the
+// part of the picture that is drawn, pixels from the upper left to beyond the lower right. Bound by pass/sky_physical.wgsl.
 
 #include "lib/air_march.wgsl"
 

@@ -1,9 +1,9 @@
 //! How the model `physical` draws: `shaders/lib/physical.wgsl`, with the air tables of group 1.
 //!
 //! The march is made at every eighth pixel of every eighth row first. Cells between four of those that are even enough are drawn from them by
-//! cubic interpolation; at the corners of the others' fourths the march is made again, and so on to every second pixel; what no cell draws is marched
-//! pixel by pixel. Where another world's shadow may fall, which may be small, and where density jumps, the first is every second. A forced frame
-//! marches at every pixel: the two differ by the bound that is stated at [`AGREE`].
+//! cubic interpolation, two triangles each; in the others the march is made at every second pixel, with cells again; what no cell draws is marched
+//! pixel by pixel. Where another world's shadow may fall, which may be small, and where density jumps, there are only the rays of every second
+//! pixel. A forced frame marches at every pixel: the two differ by the bound that is stated at [`AGREE`].
 
 use super::choose::Rect;
 use super::{Draw, Painter, PainterKind, Parts, no_settings};
