@@ -5,6 +5,7 @@
 
 #include "lib/air.wgsl"
 #include "lib/air_shadow.wgsl"
+#include "lib/eclipse_rings.wgsl"
 #include "lib/sky_pixel.wgsl"
 
 // Set to false in pipelines for airs on which no shadow of another world can fall.
@@ -35,13 +36,13 @@ struct AirRay {
 // by the classes' phase functions, by those of the aureole, and by none, per channel.
 fn air_source(
     air: Air, transmittance: texture_2d_array<f32>, orders: texture_3d<f32>, linear: sampler, slot: i32,
-    along: AirRay, sun: AirSun, phased: vec3<f32>, turned: vec3<f32>, scattering: vec3<f32>, s: f32, altitude: f32, eclipse: Eclipse,
+    along: AirRay, sun: AirSun, phased: vec3<f32>, turned: vec3<f32>, scattering: vec3<f32>, s: f32, altitude: f32, direct: f32, diffuse: vec3<f32>,
 ) -> vec3<f32> {
     let mu_s = (along.up_sun + s * along.ray_sun) / (air.shape.x + altitude);
     let lit = visible_above_limb(sun.angular_radius, sun_elevation(air.shape.x, altitude, mu_s));
     let beam = air_sun_beam(air, transmittance, linear, along.beam, altitude, mu_s);
-    return mix(turned, phased, beam.a) * (lit * eclipse.direct) * beam.rgb
-        + scattering * (sun.multiple * eclipse.diffuse)
+    return mix(turned, phased, beam.a) * (lit * direct) * beam.rgb
+        + scattering * (sun.multiple * diffuse)
             * air_orders(air, orders, linear, slot, altitude, mu_s, (along.path.slope + s) / (air.shape.x + altitude), along.ray_sun);
 }
 
@@ -66,20 +67,32 @@ fn air_panels(air: Air, media: texture_2d_array<f32>, slot: i32, along: AirRay, 
     return u32(clamp(ceil(max(depth, max(40.0 * abs(high - low), 20.0 * redder) / air.shape.y)), 1.0, ceil(f32(most) + more)));
 }
 
+// What of a point's further orders its surroundings and its own place have in an eclipse.
+fn air_further(
+    air: Air, along: AirRay, sheets: texture_2d_array<f32>, linear: sampler, body: Body, star: vec4<f32>, s: f32,
+) -> Further {
+    let rings = air_rings(
+        air, air_altitude(air, along.path, s), (along.up_sun + s * along.ray_sun) / air.shape.x, (along.path.slope + s) / air.shape.x);
+    return eclipse_further(rings, eclipse_around_seen(sheets, linear, body, star, along.ray * (along.path.start + s), along.ray));
+}
+
 // From the path's start to `end` metres further; `count` points on a long stretch. `ray` is the direction of sight, `star` the star's sphere.
 fn air_march(
     air: Air, media: texture_2d_array<f32>, transmittance: texture_2d_array<f32>, orders: texture_3d<f32>, linear: sampler,
-    slot: i32, path: AirPath, end: f32, ray: vec3<f32>, sun: AirSun, body: Body, star: vec4<f32>, count: u32,
+    slot: i32, path: AirPath, end: f32, ray: vec3<f32>, sun: AirSun, body: Body, star: vec4<f32>,
+    sheets: texture_2d_array<f32>, count: u32,
 ) -> AirLight {
     let cosine = dot(ray, sun.direction);
     let along = AirRay(
         path, ray, path.radius * dot(path.up, sun.direction), cosine, air_phase(air, media, slot, cosine) * sun.single,
         air_aureole(air, media, slot, cosine) * sun.single, 2 * slot + i32(sun.multiple));
     let night = air_night(air.shape.x, path, along.up_sun, cosine, sun.angular_radius, end);
-    var shade = AirShade(vec4<f32>(-1.0), false);
+    var shade = AirShade(vec4<f32>(-1.0), 0u);
     if AIR_ECLIPSES && body.ids.y > 0 {
         shade = air_shade(body, star, ray * path.start, ray, end, air.rings[3].w);
     }
+    // Loops of one turn or none, and not branches: where a processor stands in for a GPU it takes both sides of a branch.
+    let eclipsed = min(shade.count, 1u);
     let most = max(count / 4u, 1u);
 
     var out = AirLight(vec3<f32>(0.0), vec3<f32>(1.0));
@@ -90,17 +103,18 @@ fn air_march(
     loop {
         let next = air_next_cut(air, path, begin, end, vec4<f32>(night, -1.0, -1.0), shade.cuts);
         let middle = 0.5 * (begin + next);
+        let free = select(air_shade_even(shade, middle), 1.0, shade.count == 0u);
         let dark = middle > night.x && middle < night.y;
         let panels = air_panels(air, media, slot, along, begin, next, select(most, (most + 1u) / 2u, dark));
         var i = 0u;
         loop {
             let n = air_nodes(air, path, begin, next, i, panels);
-            // The rings' free fractions from the two Gauss points of the panel, evenly between and beyond: their integral is exact to third order.
-            var around: mat2x4<f32>;
-            if AIR_ECLIPSES && shade.falls {
+            // What comes from around is found at the two Gauss points of the panel, evenly between and beyond: its integral is exact to third order.
+            var further: array<Further, 2>;
+            for (var turn = 0u; turn < eclipsed; turn++) {
                 let at = air_panel_places(path, begin, next, (f32(i) + GAUSS_TWO) / f32(panels));
-                around[0] = eclipse_around(body, star, ray * (path.start + at.x), air_ring_radii(air));
-                around[1] = eclipse_around(body, star, ray * (path.start + at.y), air_ring_radii(air));
+                further[0] = air_further(air, along, sheets, linear, body, star, at.x);
+                further[1] = air_further(air, along, sheets, linear, body, star, at.y);
             }
             let m0 = air_matter(air, media, slot, n.altitude.x);
             let m1 = air_matter(air, media, slot, n.altitude.y);
@@ -116,18 +130,21 @@ fn air_march(
             loop {
                 let one = select(vec4<f32>(0.0), ONES, vec4<u32>(0u, 1u, 2u, 3u) == vec4<u32>(j));
                 let s = dot(n.s, one);
-                var eclipse = NO_ECLIPSE;
-                if AIR_ECLIPSES && shade.falls {
-                    let rings = air_rings(air, dot(n.altitude, one), (along.up_sun + s * along.ray_sun) / air.shape.x);
-                    let here = mix(around[0], around[1], (dot(GAUSS_X, one) - GAUSS_TWO.x) / (GAUSS_TWO.y - GAUSS_TWO.x));
-                    eclipse = eclipse_of(eclipse_visible(body, star, ray * (path.start + s)), max(here, vec4<f32>(0.0)), rings.weight);
+                var direct = free;
+                for (var turn = 0u; turn < select(0u, 1u, free < 0.0); turn++) {
+                    direct = eclipse_visible(body, star, ray * (path.start + s));
+                }
+                var diffuse = vec3<f32>(1.0);
+                for (var turn = 0u; turn < eclipsed; turn++) {
+                    let part = (dot(GAUSS_X, one) - GAUSS_TWO.x) / (GAUSS_TWO.y - GAUSS_TWO.x);
+                    diffuse = max(mix(further[0].around, further[1].around, part), vec3<f32>(0.0)) + mix(further[0].own, further[1].own, part) * direct;
                 }
                 // Where a point stands for much optical depth, the collocation overshoots: there its source is taken as even over its share.
                 let own = depths * (GAUSS_WEIGHT * one);
                 let even = (1.0 - exp(-own)) / max(own, vec3<f32>(1e-6));
                 let seen = mix(exp(-clamp(run * one - before, vec3<f32>(0.0), own)), even, smoothstep(vec3<f32>(3.0), vec3<f32>(6.0), own));
                 out.radiance += (dot(n.span * GAUSS_WEIGHT, one) * exp(-depth - before)) * seen
-                    * air_source(air, transmittance, orders, linear, slot, along, sun, phased * one, turned * one, all * one, s, dot(n.altitude, one), eclipse);
+                    * air_source(air, transmittance, orders, linear, slot, along, sun, phased * one, turned * one, all * one, s, dot(n.altitude, one), direct, diffuse);
                 before += own;
                 j++;
                 if j >= 4u {

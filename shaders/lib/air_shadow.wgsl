@@ -36,13 +36,13 @@ fn air_night(bottom: f32, path: AirPath, up_sun: f32, ray_sun: f32, sun_rad: f32
 
 struct AirShade {
     cuts: vec4<f32>,  // where umbra and penumbra of the deepest shadow begin and end; negative: nowhere
-    falls: bool,      // whether any shadow touches the ray
+    count: u32,       // how many shadows touch the ray
 }
 
 // Shadows of the body's occluders on the ray from `point` (m from the camera) to `end` metres further; `reach`: how far beyond a
 // penumbra light scattered from within it still counts.
 fn air_shade(body: Body, star: vec4<f32>, point: vec3<f32>, ray: vec3<f32>, end: f32, reach: f32) -> AirShade {
-    var out = AirShade(vec4<f32>(-1.0), false);
+    var out = AirShade(vec4<f32>(-1.0), 0u);
     let count = min(u32(body.ids.y), MAX_OCCLUDERS);
     var deepest = 1e30;
     for (var i = 0u; i < count; i++) {
@@ -67,7 +67,7 @@ fn air_shade(body: Body, star: vec4<f32>, point: vec3<f32>, ray: vec3<f32>, end:
         if wide.y <= wide.x {
             continue;
         }
-        out.falls = true;
+        out.count++;
         let nearest = length(p0 + p1 * clamp(-dot(p0, p1) / max(dot(p1, p1), 1e-12), 0.0, end)) / max(r0.y, 1.0);
         if nearest < deepest {
             deepest = nearest;
@@ -75,6 +75,14 @@ fn air_shade(body: Body, star: vec4<f32>, point: vec3<f32>, ray: vec3<f32>, end:
         }
     }
     return out;
+}
+
+// Whether the free fraction is the same on a whole stretch about `middle`, and which: of one shadow alone, 0 in its umbra, 1 outside of its penumbra.
+// Negative: it is not.
+fn air_shade_even(shade: AirShade, middle: f32) -> f32 {
+    let dark = middle > shade.cuts.x && middle < shade.cuts.y;
+    let aside = middle < shade.cuts.z || middle > shade.cuts.w;
+    return select(-1.0, select(1.0, 0.0, dark), shade.count == 1u && (dark || aside));
 }
 
 // Where |p₀ + s p₁| < r₀ + s r₁ between 0 and `end`; (end, end): nowhere. A ray that turns from the axis by less than the cone opens meets

@@ -6,10 +6,13 @@
 // Not here: shadows of ships and mountains.
 
 #include "lib/air.wgsl"
+#include "lib/eclipse_rings.wgsl"
 #include "lib/refracted.wgsl"
 
 // By all stars and what glows in the air of the Earth, on horizontal ground.
 const STARLIGHT_LX: f32 = 1e-3;
+// Zenith cosine whose square is the mean over all directions.
+const ALL_AROUND: f32 = 0.57735027;
 
 struct Daylight {
     sun: vec3<f32>,  // face-on: horizon, eclipses, reddening by air
@@ -27,22 +30,23 @@ fn ground_albedo(body: Body, air: Air) -> vec3<f32> {
 // `point`: metres from the camera. `air`: airs.list[slot] where the body has one, any otherwise.
 fn daylight(
     body: Body, star: vec4<f32>, point: vec3<f32>,
-    air: Air, transmittance: texture_2d_array<f32>, irradiance: texture_2d_array<f32>, refracted: texture_2d_array<f32>, linear: sampler,
+    air: Air, transmittance: texture_2d_array<f32>, irradiance: texture_2d_array<f32>, refracted: texture_2d_array<f32>,
+    sheets: texture_2d_array<f32>, linear: sampler,
 ) -> Daylight {
     let slot = body.ids.z;
     let altitude = altitude_of(body, point);
     let up = normalize(point - body.centre.xyz);
     let mu_s = dot(up, body.sun.xyz);
-    var eclipse = NO_ECLIPSE;
+    var direct = 1.0;
+    var diffuse = vec3<f32>(1.0);
     if body.ids.y > 0 && (slot >= 0 || body.lights.x == 0) {
-        let direct = eclipse_visible(body, star, point);
-        eclipse = Eclipse(direct, vec3<f32>(direct));
+        direct = eclipse_visible(body, star, point);
         if slot >= 0 {
-            let rings = air_rings(air, altitude, mu_s);
-            eclipse = eclipse_of(direct, eclipse_around(body, star, point, rings.radius), rings.weight);
+            let further = eclipse_further(air_rings(air, altitude, mu_s, ALL_AROUND), eclipse_around(sheets, linear, body, star, point));
+            diffuse = further.around + further.own * direct;
         }
     }
-    var free = vec3<f32>(eclipse.direct);
+    var free = vec3<f32>(direct);
     if body.lights.x > 0 {
         free = eclipse_light(body, star, point, refracted);
     }
@@ -50,7 +54,7 @@ fn daylight(
     var out = Daylight(free * visible, vec3<f32>(0.0), up);
     if slot >= 0 && altitude < air.shape.y {
         out.sun *= air_sun_transmittance(air, transmittance, linear, slot, altitude, mu_s);
-        out.sky = air_sky_irradiance(air, irradiance, linear, slot, altitude, mu_s) * eclipse.diffuse;
+        out.sky = air_sky_irradiance(air, irradiance, linear, slot, altitude, mu_s) * diffuse;
     } else if body.lights.y >= 0 {
         out.sun = free * own_limb_light(body, star, point, altitude, refracted);
     } else if slot >= 0 {

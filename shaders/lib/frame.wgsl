@@ -30,6 +30,7 @@ struct Body {
     lights: vec4<i32>,       // 1 where an occluder has air; layer of its own refracted light or −1; 1 where there is a second light; 1 where the star lights no air in view
     second: vec4<f32>,       // of the second light: xyz: to it, unit; w: its angular radius, rad
     second_illuminance: vec4<f32>,  // rgb: by it above the air, lx
+    sheets: array<vec4<f32>, 16>,   // of each occluder: a direction across its shadow, first layer of its sheet or −1; the sheet's half width, m, its bend, root of the two: lib/eclipse_rings.wgsl
     casters: array<vec4<i32>, 2>,   // of each occluder: layer of the light that its air bends into its shadow, or −1
     occluders: array<vec4<f32>, MAX_OCCLUDERS>,  // xyz: centre, m; w: radius, m
 }

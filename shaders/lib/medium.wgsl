@@ -37,7 +37,9 @@ struct Air {
     aureole: Phases,            // where it scatters light that such peaks have turned before
     levels: array<vec4<f32>, 4>,       // roots of the altitudes of the rows of further orders, by the top's: engine/src/air/model/levels.rs
     level_steps: array<vec4<f32>, 4>,  // 1 / from each to the next; 0 after the last
-    pad: array<vec4<f32>, 6>,  // to a multiple of 256 bytes: any graphics card binds one air of the list
+    tilt: array<vec4<f32>, 4>,  // by what rings' weights grow for a view up and down at the datum; the rise of both with altitude
+    ring_parts: array<vec4<f32>, 3>,  // distances in each ring along the ground, m, near to far
+    pad: array<vec4<f32>, 15>,  // to a multiple of 256 bytes: any graphics card binds one air of the list
 }
 
 struct Airs {
@@ -53,19 +55,17 @@ struct AirMatter {
 // Rings about a point from which light comes that is scattered there not for the first time.
 struct Rings {
     weight: mat4x3<f32>,  // a column per ring, per channel; the point itself has the rest to 1
-    radius: vec4<f32>,    // along the ground, m
 }
-fn air_rings(air: Air, altitude: f32, mu_s: f32) -> Rings {
+fn air_rings(air: Air, altitude: f32, mu_s: f32, mu_v: f32) -> Rings {
     // Between the datum and the altitude of the second four weights rise as x (1 + x) / 2; with the sun's height evenly.
     let x = clamp(altitude * air.rings[4].w, 0.0, 1.0);
     let h = 0.5 * (x + x * x);
     let m = clamp((mu_s - air.rings[5].w) * air.rings[6].w, 0.0, 1.0);
+    let tilt = 1.0 + (mu_v * mu_v) * select(air.tilt[1] + h * air.tilt[3], air.tilt[0] + h * air.tilt[2], mu_v > 0.0);
     return Rings(
-        mat4x3<f32>(ring_weight(air, 0u, h, m), ring_weight(air, 1u, h, m), ring_weight(air, 2u, h, m), ring_weight(air, 3u, h, m)),
-        air_ring_radii(air));
-}
-fn air_ring_radii(air: Air) -> vec4<f32> {
-    return vec4<f32>(air.rings[0].w, air.rings[1].w, air.rings[2].w, air.rings[3].w);
+        mat4x3<f32>(
+            tilt.x * ring_weight(air, 0u, h, m), tilt.y * ring_weight(air, 1u, h, m),
+            tilt.z * ring_weight(air, 2u, h, m), tilt.w * ring_weight(air, 3u, h, m)));
 }
 fn ring_weight(air: Air, k: u32, h: f32, m: f32) -> vec3<f32> {
     return air.rings[k].rgb + h * air.rings[4u + k].rgb + m * (air.rings[8u + k].rgb + h * air.rings[12u + k].rgb);

@@ -9,14 +9,13 @@ fn asin_small(x: f32) -> f32 {
     return x * (1.0 + y * (1.0 / 6.0 + y * (3.0 / 40.0 + y * (15.0 / 336.0 + y * (105.0 / 3456.0)))));
 }
 
-// atan of x ≥ 0 to 2e-7: halved twice so that the series is short.
+// atan of x ≥ 0 to 2e-7, by a polynomial on 0 … 1 [Abramowitz & Stegun 1964, 4.4.49].
 fn atan_positive(x: f32) -> f32 {
     let inverse = x > 1.0;
     let a = select(x, 1.0 / max(x, 1.0), inverse);
-    let b = a / (1.0 + sqrt(1.0 + a * a));
-    let c = b / (1.0 + sqrt(1.0 + b * b));
-    let y = c * c;
-    let angle = 4.0 * c * (1.0 - y * (1.0 / 3.0 - y * (1.0 / 5.0 - y * (1.0 / 7.0 - y / 9.0))));
+    let y = a * a;
+    let angle = a * (1.0 + y * (-0.3333314528 + y * (0.1999355085 + y * (-0.1420889944 + y * (0.1065626393
+        + y * (-0.0752896400 + y * (0.0429096138 + y * (-0.0161657367 + y * 0.0028662257))))))));
     return select(angle, 1.57079632679 - angle, inverse);
 }
 
@@ -26,11 +25,16 @@ fn separation(a: vec3<f32>, b: vec3<f32>) -> f32 {
     return select(2.0 * asin(half), 2.0 * asin_small(half), half < 0.25);
 }
 
-// x − ½ sin 2x for 0 ≤ x ≤ π, without cancellation.
-fn lens_segment(x: f32) -> f32 {
+// x − ½ sin 2x for 0 ≤ x ≤ π, without cancellation; `half` is tan ½x.
+fn lens_segment(half: f32) -> f32 {
+    let x = 2.0 * atan_positive(half);
     let y = x * x;
     let series = x * y * (2.0 / 3.0 - y * (2.0 / 15.0 - y * (4.0 / 315.0 - y * (2.0 / 2835.0))));
-    return select(x - 0.5 * sin(2.0 * x), series, x < 0.5);
+    // ½ sin 2x = 2 t (1 − t²) / (1 + t²)², of whichever of t and 1/t is below 1.
+    let t = select(half, 1.0 / max(half, 1.0), half > 1.0);
+    let q = 1.0 + t * t;
+    let sine = 2.0 * t * (2.0 - q) / (q * q);
+    return select(x - select(sine, -sine, half > 1.0), series, x < 0.5);
 }
 
 // Free fraction above a straight limb; `elevation` is the angle from the limb up to the sun's centre.
@@ -42,8 +46,7 @@ fn visible_above_limb(sun_rad: f32, elevation: f32) -> f32 {
     if x <= -1.0 {
         return 0.0;
     }
-    let a = 2.0 * atan_positive(sqrt((1.0 - x) / (1.0 + x)));
-    return clamp(1.0 - lens_segment(a) / 3.14159265359, 0.0, 1.0);
+    return clamp(1.0 - lens_segment(sqrt((1.0 - x) / (1.0 + x))) / 3.14159265359, 0.0, 1.0);
 }
 
 // Free fraction behind a disc whose limb curves like a plane circle of radius `rho` = tan(angular radius); `gap` is the angle from
@@ -66,9 +69,10 @@ fn visible_behind_limb(sun_rad: f32, rho: f32, gap: f32) -> f32 {
     let e0 = 2.0 * rho + gap + sun_rad;
     let e1 = sun_rad - gap;
     let e3 = sun_rad + gap;
-    let a = 2.0 * atan_positive(sqrt(e1 * e2 / (e0 * e3)));
-    let b = 2.0 * atan_positive(sqrt(e1 * e3 / (e0 * e2)));
-    return clamp(1.0 - (lens_segment(a) + ratio * ratio * lens_segment(b)) / 3.14159265359, 0.0, 1.0);
+    let over = e1 / e0;
+    let across = e2 / e3;
+    let lens = lens_segment(sqrt(over * across)) + ratio * ratio * lens_segment(sqrt(over / across));
+    return clamp(1.0 - lens / 3.14159265359, 0.0, 1.0);
 }
 
 // Free fraction behind a disc, from angular radii and the separation of the centres.

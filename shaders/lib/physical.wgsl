@@ -6,7 +6,7 @@
 
 fn physical_light(
     body: Body, air: Air, media: texture_2d_array<f32>, transmittance: texture_2d_array<f32>, orders: texture_3d<f32>, linear: sampler,
-    star: vec4<f32>, sky: Sky, view: SkyView,
+    star: vec4<f32>, sheets: texture_2d_array<f32>, sky: Sky, view: SkyView,
 ) -> AirLight {
     let path = sky_path(body, air, view);
     let end = sky_end(air, path, view);
@@ -17,5 +17,5 @@ fn physical_light(
     }
     let sun = AirSun(body.sun.xyz, body.sun.w, 1.0, select(1.0, 0.0, (sky.ids.z & SKY_SINGLE) != 0u));
     return air_march(
-        air, media, transmittance, orders, linear, body.ids.z, path, end, view.ray, sun, body, star, sky.ids.y);
+        air, media, transmittance, orders, linear, body.ids.z, path, end, view.ray, sun, body, star, sheets, sky.ids.y);
 }

@@ -33,24 +33,16 @@ fn refracted_root(table: texture_2d_array<f32>, layer: i32, row: u32, gap: f32) 
 
 // Light of the star at a point, over that of the free disc: past worlds without air as eclipse_visible, past others through their air.
 fn eclipse_light(body: Body, star: vec4<f32>, point: vec3<f32>, table: texture_2d_array<f32>) -> vec3<f32> {
+    let seen = star_seen(star, point);
     var out = vec3<f32>(1.0);
-    let to_star = star.xyz - point;
-    let distance = length(to_star);
-    let sun = to_star / distance;
-    let sun_rad = asin_small(star.w / distance);
-    let count = min(u32(max(body.ids.y, 0)), MAX_OCCLUDERS);
-    for (var i = 0u; i < count; i++) {
-        let offset = body.occluders[i].xyz - point;
-        let away = length(offset);
-        if away > distance {
-            continue;
-        }
-        let limb = limb_of_sphere(sun, offset, body.occluders[i].w);
+    for (var i = 0u; i < min(u32(max(body.ids.y, 0)), MAX_OCCLUDERS); i++) {
+        let ball = body.occluders[i];
+        let away = length(ball.xyz - point);
         let layer = body.casters[i / 4u][i % 4u];
-        if layer >= 0 {
-            out *= refracted_light(table, layer, body.occluders[i].w, away, limb);
-        } else {
-            out *= visible_behind_limb(sun_rad, limb.x, limb.y);
+        if layer < 0 {
+            out *= visible_behind(ball, seen, point);
+        } else if away <= seen.distance {
+            out *= refracted_light(table, layer, ball.w, away, limb_of_sphere(seen.direction, ball.xyz - point, ball.w));
         }
     }
     return out;

@@ -19,6 +19,7 @@
 @group(1) @binding(6) var shadow_compare: sampler_comparison;
 @group(1) @binding(7) var<uniform> shadow: Shadow;
 @group(1) @binding(9) var refracted: texture_2d_array<f32>;
+@group(1) @binding(10) var sheets: texture_2d_array<f32>;
 
 struct Varying {
     @builtin(position) position: vec4<f32>,
@@ -91,7 +92,7 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
     let reflected = reflect(-v, n);
     for (var k = 0u; in.host >= 0 && k < light_count(bodies.list[in.host]); k++) {
         let body = in_light(bodies.list[in.host], k);
-        let light = daylight(body, frame.star, in.point, airs.list[u32(max(body.ids.z, 0))], transmittance, irradiance, refracted, linear);
+        let light = daylight(body, frame.star, in.point, airs.list[u32(max(body.ids.z, 0))], transmittance, irradiance, refracted, sheets, linear);
         let up = light.up;
         let sine = min(body.centre.w / length(body.centre.xyz - in.point), 0.99999);
         if k == 0u {
@@ -102,7 +103,7 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
         ambient += body.illuminance.rgb * light.sky * (0.5 + 0.5 * dot(n, up));
         // The lit ground beneath the ship: Lambert, under its own daylight.
         let foot = in.point - up * max(altitude_of(body, in.point), 0.0);
-        let below = daylight(body, frame.star, foot, airs.list[u32(max(body.ids.z, 0))], transmittance, irradiance, refracted, linear);
+        let below = daylight(body, frame.star, foot, airs.list[u32(max(body.ids.z, 0))], transmittance, irradiance, refracted, sheets, linear);
         let bright = ground_albedo(body, airs.list[u32(max(body.ids.z, 0))]);
         let ground = bright / PI * body.illuminance.rgb * (below.sun * sun_cosine(dot(up, body.sun.xyz), body.sun.w) + below.sky);
         ambient += PI * ground * sphere_form_factor(sine, dot(n, -up));

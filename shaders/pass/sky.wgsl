@@ -19,6 +19,7 @@
 @group(1) @binding(2) var orders: texture_3d<f32>;
 @group(1) @binding(4) var linear: sampler;
 @group(1) @binding(8) var media: texture_2d_array<f32>;
+@group(1) @binding(10) var sheets: texture_2d_array<f32>;
 @group(2) @binding(0) var opaque: texture_2d<f32>;
 @group(2) @binding(1) var depth: texture_depth_2d;
 @group(2) @binding(2) var<storage, read> sky: Sky;

@@ -42,7 +42,7 @@ fn sky_light(body: Body, star: vec4<f32>, view: SkyView) -> AirLight {
         var k = 0u;
         loop {
             by.ids.z = i32(air.bands[3u * k].w);
-            let light = physical_light(by, airs.list[u32(by.ids.z)], media, transmittance, orders, linear, star, sky, view);
+            let light = physical_light(by, airs.list[u32(by.ids.z)], media, transmittance, orders, linear, star, sheets, sky, view);
             radiance += air_to_rgb(air, k) * light.radiance;
             through += air_to_rgb(air, k) * light.transmittance * select(0.0, 1.0, l == first);
             k++;

@@ -32,7 +32,7 @@ fn light_in_air(holder: Body, star: vec4<f32>, point: vec3<f32>) -> vec3<f32> {
     var sum = vec3<f32>(2.0 * STARLIGHT_LX);
     for (var k = 0u; k < light_count(holder); k++) {
         let by = in_light(holder, k);
-        let light = daylight(by, star, point, air, transmittance, irradiance, refracted, linear);
+        let light = daylight(by, star, point, air, transmittance, irradiance, refracted, sheets, linear);
         sum += by.illuminance.rgb * (light.sun + 2.0 * light.sky);
     }
     return sum;

@@ -19,6 +19,7 @@
 @group(1) @binding(6) var shadow_compare: sampler_comparison;
 @group(1) @binding(7) var<uniform> shadow: Shadow;
 @group(1) @binding(9) var refracted: texture_2d_array<f32>;
+@group(1) @binding(10) var sheets: texture_2d_array<f32>;
 @group(2) @binding(0) var albedo_map: texture_2d<f32>;
 @group(2) @binding(1) var night_map: texture_2d<f32>;
 @group(2) @binding(2) var map_sampler: sampler;
@@ -103,7 +104,7 @@ fn fragment(in: Varying) -> Output {
     var luminance = night;
     for (var k = 0u; k < light_count(body); k++) {
         let by = in_light(body, k);
-        let light = daylight(by, frame.star, ray * hit.distance, airs.list[u32(max(body.ids.z, 0))], transmittance, irradiance, refracted, linear);
+        let light = daylight(by, frame.star, ray * hit.distance, airs.list[u32(max(body.ids.z, 0))], transmittance, irradiance, refracted, sheets, linear);
         var open = 1.0;
         if k == 0u {
             open = ship_shadow(shadow, shadow_map, shadow_compare, ray * hit.distance, body.sun.w);

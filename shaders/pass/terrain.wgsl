@@ -23,6 +23,7 @@
 @group(1) @binding(7) var<uniform> shadow: Shadow;
 @group(1) @binding(8) var media: texture_2d_array<f32>;
 @group(1) @binding(9) var refracted: texture_2d_array<f32>;
+@group(1) @binding(10) var sheets: texture_2d_array<f32>;
 @group(1) @binding(12) var mirror_scatter: texture_3d<f32>;
 @group(1) @binding(13) var<uniform> mirror: ViewTable;
 @group(2) @binding(0) var albedo_map: texture_2d<f32>;
@@ -202,7 +203,7 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
         let by = in_light(body, k);
         let sun = fixed_from_icrf(body, by.sun.xyz);
         let mu_s = dot(sun, up);
-        let light = daylight(by, frame.star, icrf, airs.list[u32(max(body.ids.z, 0))], transmittance, irradiance, refracted, linear);
+        let light = daylight(by, frame.star, icrf, airs.list[u32(max(body.ids.z, 0))], transmittance, irradiance, refracted, sheets, linear);
         var direct = by.illuminance.rgb * light.sun;
         var sky = by.illuminance.rgb * light.sky;
         if k == 0u {

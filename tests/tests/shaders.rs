@@ -124,6 +124,7 @@ fn mirrored_structs_have_the_layout_of_their_twins() {
                 lights,
                 second,
                 second_illuminance,
+                sheets,
                 casters,
                 occluders
             }),
@@ -152,6 +153,10 @@ fn mirrored_structs_have_the_layout_of_their_twins() {
                 forward,
                 cap,
                 aureole,
+                levels,
+                level_steps,
+                tilt,
+                ring_parts,
                 pad
             }),
         ),

@@ -26,10 +26,17 @@ fn ask(@builtin(global_invocation_id) id: vec3<u32>) {
     var least = vec2<f32>(1.0);
     for (var i = 0u; i <= 200u; i++) {
         let here = start.xyz + ray.xyz * (start.w * f32(i) / 200.0);
-        let around = eclipse_around(body, star, here, radii);
-        least = min(least, vec2<f32>(eclipse_visible(body, star, here), min(min(around.x, around.y), min(around.z, around.w))));
+        least.x = min(least.x, eclipse_visible(body, star, here));
+        // Around it, across the shadow, where it is nearest.
+        let axis = normalize(star.xyz - here);
+        let first = normalize(cross(axis, vec3<f32>(axis.y, axis.z, -axis.x)));
+        for (var k = 0u; k < 32u; k++) {
+            let turn = f32(k) * 0.785398;
+            let aside = first * cos(turn) + cross(axis, first) * sin(turn);
+            least.y = min(least.y, eclipse_visible(body, star, here + aside * (ray.w * f32(1u + k / 8u) * 0.25)));
+        }
     }
-    answers[at] = vec4<f32>(select(0.0, 1.0, shade.falls), least, 0.0);
+    answers[at] = vec4<f32>(f32(min(shade.count, 1u)), least, 0.0);
 }
 ";
 

@@ -7,5 +7,6 @@
 pub mod exposure;
 pub mod occlusion;
 pub mod reflected;
+pub mod shadow;
 pub mod spectrum;
 pub mod sun;

@@ -80,7 +80,7 @@ fn metering(gpu: &Gpu, scene: &Snapshot, size: [u32; 2]) -> (Snapshot, Targets) 
     (small, Targets::new(gpu, size))
 }
 
-/// Everything that shines, in this order: air tables, light bent into shadows, tables of the airs' models, tile heights, shadow, smooth bodies, terrain, ships, stars and the sun's
+/// Everything that shines, in this order: air tables, light bent into shadows, eclipsed surroundings, tables of the airs' models, tile heights, shadow, smooth bodies, terrain, ships, stars and the sun's
 /// disc, sky (which lays every air over `opaque` and its depth). The value is the finished light: the HDR texture that the picture is made of.
 fn light(f: &mut FrameContext<'_>, passes: &mut Passes) -> Result<wgpu::TextureView, RenderError> {
     f.clear_opaque();
@@ -90,6 +90,9 @@ fn light(f: &mut FrameContext<'_>, passes: &mut Passes) -> Result<wgpu::TextureV
 
     let skip = passes.refracted.skip();
     let refracted = if f.runs("refracted", skip) { passes.refracted.record(f) } else { passes.refracted.table() };
+
+    let skip = passes.eclipse_rings.skip();
+    let sheets = if f.runs("eclipse_rings", skip) { passes.eclipse_rings.record(f, &air) } else { passes.eclipse_rings.sheets() };
 
     // No pass of its own: where a world shines on another, what that other shows is lit twice.
     f.runs("second_light", second_light::skip(f.scene));
@@ -112,7 +115,7 @@ fn light(f: &mut FrameContext<'_>, passes: &mut Passes) -> Result<wgpu::TextureV
     let skip = passes.shadow.skip(f.scene);
     let shadow = if f.runs("shadow", skip) { passes.shadow.record(f, &mut passes.ship_geometry) } else { passes.no_shadow.clone() };
 
-    let light = f.shared.light_group(f.gpu, &air, &refracted, passes.sky.mirror(f.scene), &shadow);
+    let light = f.shared.light_group(f.gpu, &air, &refracted, &sheets, passes.sky.mirror(f.scene), &shadow);
 
     let skip = passes.smooth_body.skip(f.scene);
     if f.runs("smooth_body", skip) {

@@ -3,7 +3,7 @@
 //! | group | holds | who makes it |
 //! |---|---|---|
 //! | 0 | 0 `Frame`, 1 `Bodies`, 2 `Exposure` (all uniform; `shaders/lib/frame.wgsl`) | [`Shared`], each frame |
-//! | 1 | 0 airs (uniform), 1 transmittance, 2 further orders (3-D), 3 irradiance (1, 3: 2-D arrays, a layer per air slot), 4 linear sampler, 5 shadow map, 6 comparison sampler, 7 shadow (uniform), 8 media (2-D array, loaded), 9 refracted light (2-D array, loaded, a layer per planet), 12 scattering (3-D) and 13 `ViewTable` (uniform) of the world whose water mirrors them | [`Shared::light_group`], from the values of the air-table, refracted, sky and shadow passes |
+//! | 1 | 0 airs (uniform), 1 transmittance, 2 further orders (3-D), 3 irradiance (1, 3: 2-D arrays, a layer per air slot), 4 linear sampler, 5 shadow map, 6 comparison sampler, 7 shadow (uniform), 8 media (2-D array, loaded), 9 refracted light (2-D array, loaded, a layer per planet), 10 sheets of eclipses (2-D array, three layers each), 12 scattering (3-D) and 13 `ViewTable` (uniform) of the world whose water mirrors them | [`Shared::light_group`], from the values of the air-table, refracted, sky and shadow passes |
 //! | 2, 3 | the pass's own | the pass |
 
 use super::maps::MapStore;
@@ -117,6 +117,7 @@ impl Shared {
                 uniform_entry(7),
                 loaded_entry(8, array),
                 loaded_entry(9, array),
+                texture_entry(10, array),
                 texture_entry(12, wgpu::TextureViewDimension::D3),
                 uniform_entry(13),
             ],
@@ -158,6 +159,7 @@ impl Shared {
         gpu: &Gpu,
         air: &AirTables,
         refracted: &wgpu::TextureView,
+        sheets: &wgpu::TextureView,
         mirror: &Mirror,
         shadow: &ShadowMap,
     ) -> wgpu::BindGroup {
@@ -177,6 +179,7 @@ impl Shared {
                 entry(7, shadow.uniform.as_entire_binding()),
                 entry(8, TextureView(&air.media)),
                 entry(9, TextureView(refracted)),
+                entry(10, TextureView(sheets)),
                 entry(12, TextureView(&mirror.scatter)),
                 entry(13, mirror.uniform.as_entire_binding()),
             ],

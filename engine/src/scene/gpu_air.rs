@@ -4,7 +4,7 @@ use super::gpu_data::vec4;
 use crate::air::model::forward::Truncated;
 use crate::air::model::levels::Levels;
 use crate::air::model::orders::SunMap;
-use crate::air::model::spread::{RINGS, SUNS, Spread};
+use crate::air::model::spread::{PARTS, RINGS, SUNS, Spread};
 use crate::air::model::view_space::Spacing;
 use crate::air::model::view_table::{AlphaColour, Split, ViewTable};
 use crate::air::{Classes, Layer, Medium, Phase, Profile};
@@ -59,7 +59,9 @@ pub struct AirUniform {
     pub aureole: PhasesUniform,
     pub levels: [[f32; 4]; 4],
     pub level_steps: [[f32; 4]; 4],
-    pub pad: [[f32; 4]; 6],
+    pub tilt: [[f32; 4]; 4],
+    pub ring_parts: [[f32; 4]; PARTS],
+    pub pad: [[f32; 4]; 15],
 }
 
 // A graphics card binds one air of the list only where its place is a multiple of this.
@@ -112,10 +114,16 @@ impl AirUniform {
         let w = [narrow(1.0 / spread.altitude_m.max(1e-3)), narrow(SUNS[0]), narrow(1.0 / (SUNS[1] - SUNS[0])), 0.0];
         for (k, w) in w.into_iter().enumerate() {
             let rise = [0, 1].map(|sun| spread.high[sun][k] - spread.low[sun][k]);
-            self.rings[k] = vec4(narrow3(spread.low[0][k]), narrow(spread.radius_m[k]));
+            self.rings[k] = vec4(narrow3(spread.low[0][k]), narrow(spread.radius_m[k][PARTS - 1]));
             self.rings[RINGS + k] = vec4(narrow3(rise[0]), w);
             self.rings[2 * RINGS + k] = vec4(narrow3(spread.low[1][k] - spread.low[0][k]), 0.0);
             self.rings[3 * RINGS + k] = vec4(narrow3(rise[1] - rise[0]), 0.0);
+            (0..PARTS).for_each(|part| self.ring_parts[part][k] = narrow(spread.radius_m[k][part]));
+            let [low, high] = spread.tilt;
+            for side in 0..2 {
+                self.tilt[side][k] = narrow(low[side][k]);
+                self.tilt[2 + side][k] = narrow(high[side][k] - low[side][k]);
+            }
         }
         self
     }

@@ -11,8 +11,10 @@ pub use super::gpu_air::{
 };
 use super::second_light::{self, SecondLight};
 use super::{Body, Camera, Ship, Snapshot, Surface};
+use crate::light::shadow::Sheet;
+use crate::space::relative::narrow3;
 use bytemuck::{Pod, Zeroable};
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 /// Bodies that a frame may hold (the first ones; further ones are left out, unless they are points of light).
 pub const MAX_BODIES: usize = 32;
@@ -51,6 +53,7 @@ pub struct BodyUniform {
     pub lights: [i32; 4],
     pub second: [f32; 4],
     pub second_illuminance: [f32; 4],
+    pub sheets: [[f32; 4]; 2 * MAX_OCCLUDERS],
     pub casters: [[i32; 4]; 2],
     pub occluders: [[f32; 4]; MAX_OCCLUDERS],
 }
@@ -101,7 +104,7 @@ impl FrameUniform {
 }
 
 /// Where the tables lie that a body is lit by.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Layers {
     /// Slot of its air's.
     pub air: Option<u32>,
@@ -109,6 +112,8 @@ pub struct Layers {
     pub own: Option<u32>,
     /// The same of each of its occluders.
     pub casters: [Option<u32>; MAX_OCCLUDERS],
+    /// First layer of the sheet of each occluder's shadow on its air.
+    pub sheets: [Option<(u32, Sheet)>; MAX_OCCLUDERS],
 }
 
 impl BodyUniform {
@@ -120,6 +125,11 @@ impl BodyUniform {
         let mut occluders = [[0.0; 4]; MAX_OCCLUDERS];
         for (slot, o) in occluders.iter_mut().zip(&body.occluders) {
             *slot = vec4(o.centre_m, o.radius_m);
+        }
+        let mut sheets = [[0.0, 0.0, 0.0, -1.0]; 2 * MAX_OCCLUDERS];
+        for (rows, (first, sheet)) in sheets.chunks_exact_mut(2).zip(&layers.sheets).filter_map(|(rows, s)| Some((rows, (*s)?))) {
+            let shape = DVec3::new(sheet.half_m, sheet.bend, (1.0 + sheet.bend * sheet.bend).sqrt() - sheet.bend);
+            rows.copy_from_slice(&[vec4(narrow3(sheet.across), first as f32), vec4(narrow3(shape), 0.0)]);
         }
         Self {
             centre: vec4(body.centre_m, body.radius_m),
@@ -144,6 +154,7 @@ impl BodyUniform {
             ],
             second: second.map_or([0.0; 4], |l| vec4(l.direction, l.angular_radius_rad)),
             second_illuminance: second.map_or([0.0; 4], |l| vec4(l.illuminance_lx * l.share, 0.0)),
+            sheets,
             casters: [0, 4].map(|i| [0, 1, 2, 3].map(|k| layer(layers.casters[i + k]))),
             occluders,
         }

@@ -147,7 +147,7 @@ impl AirBaker {
             let why = without_tables(scene, i).filter(|_| !scene.force.all);
             let air = body.air.as_ref().filter(|_| why.is_none());
             let slot = air.and_then(|air| match is_bare(body, air) {
-                true => self.slot_of(body.id, Part::Bare, &air.medium),
+                true => self.slot_of(body.id, Part::Bare, &air.medium, None),
                 false => self.slots_of(body.id, air),
             });
             let held = slot.and_then(|s| self.slots.get(s as usize));
@@ -170,9 +170,10 @@ impl AirBaker {
 
     /// The slot of an air, and those of its bands; where there is no room for these it is drawn without.
     fn slots_of(&mut self, id: u16, air: &Air) -> Option<u32> {
-        let own = self.slot_of(id, Part::Own, &air.medium)?;
+        let own = self.slot_of(id, Part::Own, &air.medium, None)?;
+        let rings = self.spread(own).copied();
         let bands: Option<InBands> = air.bands.as_ref().and_then(|bands| {
-            let slot = |(k, band): (usize, &Band)| Some((self.slot_of(id, Part::Band(k), &band.medium)?, band.to_rgb));
+            let slot = |(k, band): (usize, &Band)| Some((self.slot_of(id, Part::Band(k), &band.medium, rings.as_ref())?, band.to_rgb));
             bands.list.iter().enumerate().map(slot).collect()
         });
         let overlaid = matches!(air.model, Model::ViewTable(_));
@@ -184,13 +185,14 @@ impl AirBaker {
         Some(own)
     }
 
+    /// `rings`: those of another medium, whose sheets of eclipses it shares.
     #[allow(clippy::cast_possible_truncation)]
-    fn slot_of(&mut self, id: u16, part: Part, medium: &Medium) -> Option<u32> {
+    fn slot_of(&mut self, id: u16, part: Part, medium: &Medium, rings: Option<&Spread>) -> Option<u32> {
         let fresh = || Slot {
             id,
             part,
             medium: medium.clone(),
-            spread: Spread::new(medium),
+            spread: rings.map_or_else(|| Spread::new(medium), |rings| Spread::in_rings(medium, rings)),
             bands: None,
             overlaid: false,
             used: self.clock,
@@ -218,6 +220,11 @@ impl AirBaker {
             *slot = fresh();
         }
         Some(at as u32)
+    }
+
+    /// From how far scattered light comes in the air of a slot.
+    pub fn spread(&self, slot: u32) -> Option<&Spread> {
+        self.slots.get(slot as usize).map(|s| &s.spread)
     }
 
     /// Why the scene does not need it.

@@ -9,6 +9,7 @@ pub mod baseline_bruneton;
 pub mod baseline_hillaire;
 pub mod baseline_hillaire_sky;
 pub mod bloom;
+pub mod eclipse_rings;
 pub mod exposure;
 pub mod refracted;
 pub mod shadow;
@@ -38,6 +39,8 @@ pub struct Passes {
     pub no_shadow: ShadowMap,
     /// Light that air bends into shadows.
     pub refracted: refracted::Refracted,
+    /// Eclipsed surroundings of places in air.
+    pub eclipse_rings: eclipse_rings::EclipseRings,
     /// Spheres without terrain.
     pub smooth_body: smooth_body::SmoothBody,
     /// The ship's shadow.
@@ -69,6 +72,7 @@ impl Passes {
             air_tables: air_tables::AirBaker::new(gpu, shaders)?,
             no_shadow: ShadowMap::none(gpu),
             refracted: refracted::Refracted::new(gpu),
+            eclipse_rings: eclipse_rings::EclipseRings::new(gpu, shaders, shared)?,
             smooth_body: smooth_body::SmoothBody::new(gpu, shaders, shared, maps)?,
             shadow: shadow::ShipShadow::new(gpu, shaders, shared)?,
             terrain: terrain::Terrain::new(gpu, shaders, shared, maps)?,
@@ -87,6 +91,7 @@ impl Passes {
     pub fn layers(&mut self, scene: &Snapshot) -> Vec<Layers> {
         let mut all = self.refracted.assign(scene);
         all.iter_mut().zip(self.air_tables.assign(scene)).for_each(|(layers, air)| layers.air = air);
+        self.eclipse_rings.assign(scene, &self.air_tables, &mut all);
         all
     }
 }

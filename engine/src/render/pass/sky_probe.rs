@@ -2,14 +2,16 @@
 //! For `probe sky`, `bench air` and tests.
 
 use super::air_tables::AirBaker;
+use super::eclipse_rings::{self, EclipseRings};
 use super::sky::{Painter, Parts, STEPS, painter, picture_layout};
 use crate::air::Air;
+use crate::air::model::spread::Spread;
 use crate::gpu::{Gpu, ShaderLibrary, readback};
 use crate::render::RenderError;
 use crate::render::pipeline::{compute_pipeline, storage_entry, written_entry};
-use crate::render::shared::{Mirror, ShadowMap, Shared};
+use crate::render::shared::{AirTables, Mirror, ShadowMap, Shared};
 use crate::scene::gpu_data::{BodiesUniform, BodyUniform, FrameUniform, Layers, MAX_OCCLUDERS, SKY_SINGLE, SkyUniform, vec4};
-use crate::scene::{Body, Occluder, SecondLight, Surface};
+use crate::scene::{Body, Occluder, SecondLight, Star, Surface};
 use crate::space::relative::narrow;
 use bytemuck::{Pod, Zeroable};
 use glam::{Quat, Vec3};
@@ -75,6 +77,9 @@ pub struct Prober {
     shared: Shared,
     air: Air,
     painter: Box<dyn Painter>,
+    tables: AirTables,
+    spread: Spread,
+    eclipse_rings: EclipseRings,
     /// Groups 1 and 3 are those of the picture; group 2 has the rays.
     light: wgpu::BindGroup,
     layout: wgpu::BindGroupLayout,
@@ -93,7 +98,8 @@ impl Prober {
         painter.bake(gpu, &mut encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default()));
         gpu.submit(encoder);
 
-        let light = shared.light_group(gpu, &tables, &tables.media, &Mirror::none(gpu), &ShadowMap::none(gpu));
+        let eclipse_rings = EclipseRings::new(gpu, shaders, &shared)?;
+        let light = shared.light_group(gpu, &tables, &tables.media, &eclipse_rings.sheets(), &Mirror::none(gpu), &ShadowMap::none(gpu));
         let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("group 2: rays"),
             entries: &[storage_entry(2), storage_entry(3), written_entry(4)],
@@ -102,18 +108,49 @@ impl Prober {
         let module = shaders.load(&gpu.device, kind.file)?;
         let groups = [&shared.frame_layout, &shared.light_layout, &layout, &kind.own_layout];
         let pipeline = compute_pipeline(gpu, "sky_probe", &module, &groups, "probe");
-        Ok(Self { shared, air: air.clone(), painter, light, layout, pipeline })
+        let spread = Spread::new(&air.medium);
+        Ok(Self { shared, air: air.clone(), painter, tables, spread, eclipse_rings, light, layout, pipeline })
     }
 
-    /// What each ray brings.
-    #[allow(clippy::cast_possible_truncation)]
+    /// What each ray brings. Rays that follow each other under the same sun are asked together where there are occluders.
     pub fn ask(&self, gpu: &Gpu, rays: &[ProbeRay], options: &ProbeOptions) -> Result<Vec<ProbeLight>, RenderError> {
-        if rays.is_empty() {
-            return Ok(Vec::new());
+        let apart = !options.occluders.is_empty() && options.star.is_none();
+        let runs = rays.chunk_by(|a, b| !apart || a.sun == b.sun);
+        let found: Result<Vec<_>, _> = runs.map(|run| self.ask_together(gpu, run, options)).collect();
+        Ok(found?.concat())
+    }
+
+    /// Makes the surroundings of eclipsed places, and says where they are.
+    fn eclipsed(&self, gpu: &Gpu, body: &Body, first: &ProbeRay, options: &ProbeOptions) -> Layers {
+        let mut layers = Layers { air: Some(0), ..Layers::default() };
+        let [x, y, z, sun_rad] = first.sun;
+        let (centre_m, radius_m) = options.star.unwrap_or((Vec3::new(x, y, z) * STAR_FAR_M, sun_rad.sin() * STAR_FAR_M));
+        let star = Star { id: 0, centre_m, radius_m, intensity_cd: Vec3::ONE };
+        let mut asked = Vec::new();
+        eclipse_rings::ask(&mut asked, (0, body), &star, (0, &self.spread), &mut layers);
+        if !asked.is_empty() {
+            let mut bodies = BodiesUniform::zeroed();
+            bodies.list[0] = BodyUniform::new(body, &layers, options.second);
+            let mut frame = FrameUniform::zeroed();
+            frame.star = vec4(centre_m, radius_m);
+            self.shared.bodies.write(&gpu.queue, &bodies);
+            self.shared.frame.write(&gpu.queue, &frame);
+            let mut encoder = gpu.encoder("eclipse rings");
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+            self.eclipse_rings.bake(gpu, &self.shared, &mut pass, &self.tables, &asked);
+            drop(pass);
+            gpu.submit(encoder);
         }
+        layers
+    }
+
+    #[allow(clippy::cast_possible_truncation)]
+    fn ask_together(&self, gpu: &Gpu, rays: &[ProbeRay], options: &ProbeOptions) -> Result<Vec<ProbeLight>, RenderError> {
+        let Some(first) = rays.first() else { return Ok(Vec::new()) };
         let body = alone(&self.air, options);
+        let layers = self.eclipsed(gpu, &body, first, options);
         let mut bodies = BodiesUniform::zeroed();
-        bodies.list[0] = BodyUniform::new(&body, &Layers { air: Some(0), ..Layers::default() }, options.second);
+        bodies.list[0] = BodyUniform::new(&body, &layers, options.second);
         self.shared.bodies.write(&gpu.queue, &bodies);
         let mut frame = FrameUniform::zeroed();
         let (centre_m, radius_m) = options.star.unwrap_or((Vec3::Z, 0.0));
@@ -150,6 +187,8 @@ impl Prober {
     }
 }
 
+/// Where a star is that stands at infinity: so far that the square of the distance is a number yet. As in `sky_probe_star`.
+const STAR_FAR_M: f32 = 1e17;
 /// Id of the body whose air is probed.
 const ALONE: u16 = 0;
 

@@ -13,6 +13,7 @@ pub mod view;
 use super::RenderError;
 use super::maps::MapStore;
 use super::pass::air_tables::AirBaker;
+use super::pass::eclipse_rings::EclipseRings;
 use super::pass::sky::choose::Rect;
 use super::pass::sky::{Draw, Painter, Parts, paint, painter, picture_layout};
 use super::pass::smooth_body::SmoothBody;
@@ -192,7 +193,8 @@ impl<'a> SkyBench<'a> {
             report: FrameReport::default(),
         };
         let tables = self.tables.values();
-        let light = self.shared.light_group(gpu, &tables, &tables.media, &Mirror::none(gpu), &ShadowMap::none(gpu));
+        let light =
+            self.shared.light_group(gpu, &tables, &tables.media, &EclipseRings::none(gpu), &Mirror::none(gpu), &ShadowMap::none(gpu));
         f.clear_opaque();
         self.ground.record(&mut f, &light);
         let before = std::mem::replace(&mut f.encoder, gpu.encoder("sky bench, air"));

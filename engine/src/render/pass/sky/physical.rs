@@ -2,20 +2,21 @@
 //!
 //! The march is made at every eighth pixel of every eighth row first. Cells between four of those that are even enough are drawn from them by
 //! cubic interpolation, two triangles each; in the others the march is made at every second pixel, with cells again; what no cell draws is marched
-//! pixel by pixel. Where another world's shadow may fall, which may be small, and where density jumps, there are only the rays of every second
-//! pixel. A forced frame marches at every pixel: the two differ by the bound that is stated at [`AGREE`].
+//! pixel by pixel. Where another world's shadow is so small in the picture that it might lie between rays, and where density jumps, there are
+//! only the rays of every second pixel. A forced frame marches at every pixel: the two differ by the bound that is stated at [`AGREE`].
 
 use super::choose::Rect;
 use super::{Draw, Painter, PainterKind, Parts, no_settings};
 use crate::air::{Air, Classes, Medium};
 use crate::gpu::Gpu;
 use crate::gpu::texture::Texture;
+use crate::light::shadow::Shadow;
 use crate::render::RenderError;
 use crate::render::pipeline::{PipelineKind, Stencil, texture_entry};
 use crate::render::shared::FrameContext;
 use crate::render::targets::{HDR, SKY_PLAN, SkyLevel};
-use crate::scene::Body;
 use crate::scene::gpu_data::{SkySettings, vec4};
+use crate::scene::{Body, Snapshot};
 use crate::space::relative::narrow3;
 use glam::{DVec3, Vec3};
 use wgpu::{BindGroupEntry, BindingResource};
@@ -26,6 +27,8 @@ pub const AGREE: f32 = 0.003;
 
 /// What most airs do without: media that are tables, and shadows of other worlds.
 const PLAIN: [(&str, f64); 2] = [("MEDIA_TABLES", 0.0), ("AIR_ECLIPSES", 0.0)];
+/// The umbra's radius, in pixels, from which on rays of the first level stand in it.
+const WIDE_PX: f64 = 8.0;
 
 /// Compiles it.
 pub fn make(parts: &Parts<'_>) -> Result<Box<dyn Painter>, RenderError> {
@@ -68,8 +71,8 @@ enum Chosen {
 /// The painter.
 struct Physical {
     kind: PainterKind,
-    /// For any air, and for airs that do without [`PLAIN`]'s.
-    rates: [Rates; 2],
+    /// For any air, for one of formulas under a shadow that is wide in the picture, and for airs that do without [`PLAIN`]'s.
+    rates: [Rates; 3],
     /// Group 3 where nothing is read from it.
     none: wgpu::BindGroup,
     dark: Texture,
@@ -81,7 +84,7 @@ impl Physical {
         let own = [0, 1, 2, 3].map(|i| texture_entry(i, wgpu::TextureViewDimension::D2));
         let kind = PainterKind::new(parts, "pass/sky_physical.wgsl", &own)?;
         let groups = [&parts.shared.frame_layout, &parts.shared.light_layout, parts.picture, &kind.own_layout];
-        let rates = [(&[][..], FINE), (&PLAIN[..], 8)].map(|(air, first)| {
+        let rates = [(&[][..], FINE), (&PLAIN[..1], 8), (&PLAIN[..], 8)].map(|(air, first)| {
             let of = |vertex, entry, colour, numbers: [u32; 3], stencil| {
                 let [rate, into, margin] = numbers.map(f64::from);
                 let own = [("FIRST_RATE", f64::from(first)), ("RATE", rate), ("INTO", into), ("MARGIN", margin)];
@@ -149,8 +152,12 @@ impl Painter for Physical {
     }
     fn before(&mut self, f: &mut FrameContext<'_>, draw: &Draw<'_>) {
         let medium = &draw.air.medium;
-        let plain = draw.body.occluders.is_empty() && Classes::of(medium).direct && medium.jumps_m(1).is_empty();
-        let rates = &self.rates[usize::from(plain)];
+        let smooth = Classes::of(medium).direct && medium.jumps_m(1).is_empty();
+        let rates = &self.rates[match umbra_px(f.scene, draw.body, medium) {
+            _ if !smooth => 0,
+            None => 2,
+            Some(px) => usize::from(px >= WIDE_PX),
+        }];
         if f.scene.force.all {
             self.chosen = Some(Chosen::Full(rates.full.clone()));
             return;
@@ -214,6 +221,24 @@ fn group(gpu: &Gpu, layout: &wgpu::BindGroupLayout, views: [&wgpu::TextureView; 
     let entry = |(binding, view)| BindGroupEntry { binding, resource: BindingResource::TextureView(view) };
     let entries: Vec<_> = (0..).zip(views).map(entry).collect();
     gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("group 3: physical"), layout, entries: &entries })
+}
+
+/// Radius of the smallest umbra on an air, in pixels: that of the disc where the sun is hidden most. `None` where no shadow reaches it.
+fn umbra_px(scene: &Snapshot, body: &Body, medium: &Medium) -> Option<f64> {
+    let star = (scene.star.centre_m.as_dvec3(), f64::from(scene.star.radius_m));
+    let shell = (body.centre_m.as_dvec3(), f64::from(body.radius_m) + medium.top_altitude_m);
+    // From as far as light counts that the air scatters on.
+    let near_m = shell.1;
+    let shadows = body.occluders.iter().map(|o| Shadow::new((o.centre_m.as_dvec3(), f64::from(o.radius_m)), star));
+    // The farthest air that is not behind the planet.
+    let to_horizon = |h: f64| (h.max(0.0) * (2.0 * f64::from(body.radius_m) + h.max(0.0))).sqrt();
+    let seen_m = to_horizon(f64::from(body.camera_altitude_m)) + to_horizon(medium.top_altitude_m);
+    let px = |s: Shadow| {
+        let at = s.meets_m(shell.0, shell.1);
+        let (away_m, umbra_m) = (at.length().max(1.0), s.radii_m(s.place(at).0)[0].abs());
+        if away_m > seen_m + umbra_m { f64::INFINITY } else { umbra_m / (away_m * f64::from(scene.camera.pixel_rad())) }
+    };
+    shadows.filter(|s| s.reaches(shell.0, shell.1, near_m)).map(px).reduce(f64::min)
 }
 
 /// The greatest extinction between datum and top, m⁻¹.
