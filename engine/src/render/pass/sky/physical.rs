@@ -106,7 +106,7 @@ impl Painter for Physical {
     }
     fn before(&mut self, f: &mut FrameContext<'_>, draw: &Draw<'_>) {
         let medium = &draw.air.medium;
-        let plain = draw.body.occluders.is_empty() && Classes::of(medium).direct && medium.jumps_m(1).is_empty();
+        let plain = draw.body.occluders.is_empty() && Classes::of(medium).direct && medium.cuts_m(1).is_empty();
         let rates = &self.rates[usize::from(plain)];
         if f.scene.force.all {
             self.chosen = Some((self.none.clone(), rates.full.clone()));
