@@ -1,6 +1,5 @@
 // One order of scattering after another, for the table of lib/air_orders.wgsl: `first` gathers the light scattered once along every
 // direction of the plan (and sunlight from the ground), `next` that of the order before; `turn` scatters what was gathered once more.
-// In deep air `seed` begins a second sequence.
 // The method and the plan: engine/src/air/model/orders.rs. Rust side: engine/src/render/pass/air_orders.rs; then comes air_orders_sum.wgsl.
 
 #include "lib/air.wgsl"
@@ -143,24 +142,6 @@ fn next(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_index) k
         }
     }
     store(at, k, sum);
-}
-
-// In deep air, in place of an order: the two-stream solution, alike in all azimuths. A thread per sun, a group per view and altitude.
-@compute @workgroup_size(32)
-fn seed(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_index) k: u32) {
-    let column = PLAN_SEED_AT + at.y * ORDERS_SUNS + k;
-    let mean = plan[column];
-    let x = 2.0 * f32(at.x) / f32(ORDERS_VIEWS - 1u) - 1.0;
-    let mu = sign(x) * (1.0 - (1.0 - abs(x)) * (1.0 - abs(x)));
-    let light = mean + plan[column + ORDERS_ALTITUDES * ORDERS_SUNS] * mu;
-    let to = (((order.x * ORDERS_ALTITUDES + at.y) * ORDERS_VIEWS + at.x) * ORDERS_SUNS + k) * 3u;
-    for (var channel = 0u; channel < 3u; channel++) {
-        sources[to + channel] = orders_encode(vec4<f32>(max(light[channel], 0.0), 0.0, 0.0, 0.0));
-    }
-    // Only that of the ground is asked for.
-    if at.x == 0u {
-        irradiance[(order.x * ORDERS_ALTITUDES + at.y) * ORDERS_SUNS + k] = sqrt(sqrt(plan[PLAN_SEED_AT + 2u * ORDERS_ALTITUDES * ORDERS_SUNS + k]));
-    }
 }
 
 // Illuminance on level ground by the light that scattering left going straight on: of the sky, but in no order's radiance.

@@ -3,16 +3,17 @@
 // Orders follow M₂ = A M₁, M₃ = A M₂ …; their sum x solves x = M₁ + A x. A geometric tail would guess the rest from the last ratio. Better: of all
 // x = M₁ + Σ yₖ Mₖ₊₁ take the one that solves it best. With z = Σ yₖ Mₖ the equation's remainder M₁ − z + A z is M₁ − Σ yₖ (Mₖ − Mₖ₊₁), which is made least in the
 // mean square: this is what GMRES does in as many steps [Saad & Schultz 1986], and A z + M₁ is one step further at no cost.
-// In deep air a seed that is next to x itself stands in place of the rest: nothing is sought (engine/src/air/model/two_stream.rs).
+// In deep air the plan brings x itself, which takes the place of all this, or of a share of it (engine/src/air/model/streams/mod.rs).
 
 #include "lib/air_orders_plan.wgsl"
 
-@group(0) @binding(3) var<uniform> order: vec4<u32>;                          // 0, how many, slot, which of them is a seed (0: none)
+@group(0) @binding(3) var<uniform> order: vec4<u32>;                          // where the plan has the solution of deep air, how many orders, slot, whether it has one
 @group(0) @binding(4) var<storage, read> sources: array<vec4<f32>>;           // order, altitude, view, sun: coded modes of red, of green, of blue
 @group(0) @binding(5) var<storage, read> irradiance: array<vec4<f32>>;        // order, altitude, sun: its fourth root; then the aureole's
 @group(0) @binding(6) var<storage, read_write> scalars: array<vec4<f32>>;     // products, row by row of PLAN_MAX_ORDERS
 @group(0) @binding(7) var table: texture_storage_3d<rgba16float, write>;
 @group(0) @binding(9) var<storage, read> drawn: array<vec4<f32>>;             // like sources, by the phase functions' full shape
+@group(0) @binding(10) var<storage, read> plan: array<vec4<f32>>;
 @group(0) @binding(8) var sky: texture_storage_2d_array<rgba16float, write>;
 
 const TEXELS: u32 = ORDERS_ALTITUDES * ORDERS_VIEWS * ORDERS_SUNS;
@@ -99,30 +100,38 @@ fn decoded(k: u32, texel: u32, channel: u32) -> vec4<f32> {
 // A thread per sun, a group per view and altitude.
 @compute @workgroup_size(32)
 fn sum(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_index) k: u32) {
-    if order.w > 0u {
-        // Orders before the seed, and its last: M₁ + A M₁ + … + Aⁿ seed.
-        if k + 1u < order.y {
-            share[k] = vec3<f32>(f32(u32(k + 1u < order.w || k + 2u == order.y)));
-        }
-    } else if k < 3u {
+    if k < 3u && order.y > 0u {
         solve(k);
     }
     workgroupBarrier();
     let texel = (at.y * ORDERS_VIEWS + at.x) * ORDERS_SUNS + k;
     let y = order.z * ORDERS_ALTITUDES + at.y;
+    var deep = vec3<f32>(0.0);
+    if order.w > 0u {
+        deep = plan[order.x].rgb;
+    }
     for (var channel = 0u; channel < 3u; channel++) {
-        var all = decoded(0u, texel, channel);
-        for (var i = 1u; i < order.y; i++) {
-            all += share[i - 1u][channel] * decoded(i, texel, channel);
+        var all = vec4<f32>(0.0);
+        for (var i = 0u; i < order.y; i++) {
+            all += select(share[max(i, 1u) - 1u][channel], 1.0, i == 0u) * decoded(i, texel, channel);
+        }
+        if order.w > 0u {
+            all = mix(all, plan[order.x + 1u + texel * 3u + channel], deep[channel]);
         }
         textureStore(table, vec3<u32>(channel * ORDERS_SUNS + k, y, at.x), orders_encode(all));
     }
     if at.x == 0u {
-        var lit = irradiance[(PLAN_MAX_ORDERS * ORDERS_ALTITUDES + at.y) * ORDERS_SUNS + k].rgb;
+        var lit = vec3<f32>(0.0);
+        if order.y > 0u {
+            lit = irradiance[(PLAN_MAX_ORDERS * ORDERS_ALTITUDES + at.y) * ORDERS_SUNS + k].rgb;
+        }
         for (var i = 0u; i < order.y; i++) {
             let root = irradiance[(i * ORDERS_ALTITUDES + at.y) * ORDERS_SUNS + k].rgb;
             let weight = select(share[max(i, 1u) - 1u], vec3<f32>(1.0), i == 0u);
             lit += weight * root * root * root * root;
+        }
+        if order.w > 0u {
+            lit = mix(lit, plan[order.x + 1u + TEXELS * 3u + at.y * ORDERS_SUNS + k].rgb, deep);
         }
         textureStore(sky, vec2<u32>(k, at.y), order.z, vec4<f32>(sqrt(sqrt(clamp(lit, vec3<f32>(0.0), vec3<f32>(1e4)))), 1.0));
     }

@@ -79,7 +79,7 @@ impl AirUniform {
     /// From a medium and its classes. Where they are not direct, formulas stay empty and [`media_rows`] has what the shader asks for.
     pub fn new(medium: &Medium, classes: &Classes) -> Self {
         let mut air = Self::zeroed();
-        let jumps = medium.jumps_m(MAX_JUMPS);
+        let jumps = medium.cuts_m(MAX_JUMPS);
         air.shape = [
             narrow(medium.bottom_radius_m),
             narrow(medium.top_altitude_m),

@@ -88,6 +88,9 @@ impl Classes {
     }
 }
 
+/// Vertical depth of scattering beyond which a march heeds the bends of a tent.
+const OPAQUE: f64 = 3.0;
+
 /// Optical depth of scattering from the datum to the top, mean of the channels.
 fn vertical_depth(layer: &Layer, top_m: f64) -> f64 {
     const PARTS: i32 = 256;
@@ -108,15 +111,25 @@ impl Medium {
 
     /// Altitudes between datum and top where the density of some layer jumps, m: a march must not step across them. At most `most`.
     pub fn jumps_m(&self, most: usize) -> Vec<f64> {
+        self.edges_m(most, f64::INFINITY)
+    }
+
+    /// The same with the bends of tents so deep that one sees no farther than into their edges.
+    pub fn cuts_m(&self, most: usize) -> Vec<f64> {
+        self.edges_m(most, OPAQUE)
+    }
+
+    fn edges_m(&self, most: usize, opaque: f64) -> Vec<f64> {
         let mut all: Vec<(f64, f64)> = Vec::new();
         for layer in &self.layers {
             let strength = f64::from((layer.scattering_per_m + layer.absorption_per_m).max_element());
+            let bends = matches!(layer.profile, Profile::Tent { .. }) && vertical_depth(layer, self.top_altitude_m) > opaque;
             let peak = layer.profile.breaks_m().into_iter().map(|h| layer.profile.density(h)).fold(0.0, f64::max);
             for h in layer.profile.breaks_m().into_iter().filter(|h| *h > 0.0 && *h < self.top_altitude_m) {
                 // A table's steep rise within a few metres is a jump to a march as well.
                 let reach = 1e-4 * self.top_altitude_m;
                 let jump = (layer.profile.density(h + reach) - layer.profile.density(h - reach)).abs();
-                if jump > 0.05 * peak {
+                if bends || jump > 0.05 * peak {
                     all.push((strength * jump, h));
                 }
             }
@@ -191,5 +204,12 @@ mod tests {
         let jumps = medium.jumps_m(8);
         assert!(jumps.len() == 3 && jumps[..2] == [2000.0, 2500.0] && (jumps[2] - 5000.5).abs() < 1.0, "{jumps:?}");
         assert_eq!(medium.jumps_m(1).len(), 1);
+        // A deep cloud's bends are cuts too.
+        medium.layers.truncate(1);
+        medium.layers[0].profile = Profile::Tent { bottom_m: 2000.0, peak_m: 3000.0, top_m: 4000.0 };
+        medium.layers[0].scattering_per_m = Vec3::splat(1e-3);
+        assert_eq!(medium.cuts_m(8), Vec::<f64>::new());
+        medium.layers[0].scattering_per_m = Vec3::splat(1e-2);
+        assert_eq!((medium.cuts_m(8), medium.jumps_m(8)), (vec![2000.0, 3000.0, 4000.0], Vec::new()));
     }
 }

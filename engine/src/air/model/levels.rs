@@ -2,9 +2,10 @@
 //!
 //! The source function changes with altitude as the sight of the ground does (by the root of the altitude), as scattering matter lies above and below, and as
 //! matter of one phase function takes the place of another. Levels lie evenly in a sum of the three, up to where matter counts no longer; where
-//! density jumps one lies close on either side.
+//! density jumps one lies close on either side. In deep air light falls to the ground within few free paths of it: there more of them lie.
 
 use super::orders::ALTITUDES;
+use super::streams::share;
 use crate::air::{Classes, Medium};
 use crate::space::relative::narrow;
 use core::f64::consts::PI;
@@ -21,6 +22,10 @@ const PARTS: usize = 96;
 const TURNING: f64 = 0.8;
 /// See [`TURNING`].
 const MATTER: f64 = 0.6;
+/// What the logarithm of transport depth from the ground up weighs in deep air, and from which depth on.
+const GROUND: f64 = 0.8;
+/// See [`GROUND`].
+const SKIN: f64 = 0.3;
 
 /// Altitudes of the rows of a table.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -63,6 +68,13 @@ impl Levels {
         let edges: Vec<f64> = edges.collect();
         let depth: f64 = edges.chunks_exact(2).map(|e| parts(e[0], e[1]).map(|(x, w)| at(x)[0] * 2.0 * x * top_m * w).sum::<f64>()).sum();
         let by_matter = MATTER / (1.0 + depth);
+        let turned = |x: f64, w: f64| {
+            let [mean, _, cosine] = at(x);
+            if cosine.is_finite() { mean * (1.0 - cosine) * 2.0 * x * top_m * w } else { 0.0 }
+        };
+        let deep: f64 = edges.chunks_exact(2).map(|e| parts(e[0], e[1]).map(|(x, w)| turned(x, w)).sum::<f64>()).sum();
+        let by_ground = GROUND * share(medium, &Classes::of(medium).list).max_element() / libm::log1p(deep / SKIN).max(1e-9);
+        let mut below = 0.0;
         let stretches: Vec<Vec<f64>> = edges
             .chunks_exact(2)
             .map(|e| {
@@ -71,7 +83,10 @@ impl Levels {
                     let [mean, _, cosine] = at(x);
                     let change = if (cosine - last).is_finite() { (cosine - last).abs() } else { 0.0 };
                     last = if cosine.is_finite() { cosine } else { last };
-                    sum += w / end + by_matter * mean * 2.0 * x * top_m * w + TURNING * change;
+                    let here = turned(x, w);
+                    let nearer = libm::log1p(here / (SKIN + below));
+                    below += here;
+                    sum += w / end + by_matter * mean * 2.0 * x * top_m * w + TURNING * change + by_ground * nearer;
                     sum
                 };
                 core::iter::once(0.0).chain(parts(e[0], e[1]).map(one).collect::<Vec<_>>()).collect()

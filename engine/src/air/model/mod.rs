@@ -13,9 +13,9 @@ mod peaks;
 pub mod physical;
 pub mod shell;
 pub mod spread;
+pub mod streams;
 mod sun_map;
 pub mod thickness;
-pub mod two_stream;
 pub mod view_space;
 pub mod view_table;
 

@@ -13,7 +13,7 @@
 //! Forward peaks are cut off first ([`super::forward`]): to the orders the light that they turn is sunlight still, or goes on along its
 //! direction. For what is drawn a second set of kernels puts it back, blurred as far as the directions lie apart.
 //!
-//! In deep air the first two orders are followed by a solution of another kind, scattered as often ([`super::two_stream`]).
+//! In deep air a solution of another kind takes the place of the orders ([`super::streams`]), over a range of depths by shares.
 //!
 //! Where the steps lie, how much light each lets through and the kernels K depend on the medium alone: [`Plan`] computes them here,
 //! in f64, for any layers, profiles and phase functions, once for a medium.
@@ -22,8 +22,8 @@ use super::forward::Truncated;
 use super::levels::Levels;
 use super::paths::{self, Matter};
 use super::peaks::{Around, Lobe};
+use super::streams::{self, column::Column};
 use super::sun_map::dip;
-use super::two_stream::{self, Column};
 use crate::air::{Class, Classes, Medium};
 use crate::space::relative::narrow;
 use core::f64::consts::PI;
@@ -31,7 +31,6 @@ use glam::DVec3;
 
 pub(super) use super::paths::step_at;
 pub use super::sun_map::SunMap;
-pub use super::two_stream::SEED_ROWS;
 
 /// Heights of the sun in a table.
 pub const SUNS: usize = 32;
@@ -65,8 +64,6 @@ pub const DRAWN_AT: usize = KERNELS_AT + ALTITUDES * VIEWS * DIRECTIONS * 3;
 pub const ROWS: usize = 2 * DRAWN_AT - KERNELS_AT;
 /// Most orders that are computed one by one.
 pub const MAX_ORDERS: u32 = 8;
-/// Orders that are computed before a two-stream solution takes the place of all that follow, and is scattered as often.
-const BEFORE_SEED: u32 = 2;
 
 /// What the precomputation of a medium's further orders needs.
 #[derive(Clone, Debug, PartialEq)]
@@ -75,12 +72,12 @@ pub struct Plan {
     /// the datum's radius; weight in the irradiance), (transmittance to the ground × albedo/π, rgb; 0), then its steps:
     /// (radius at the eye, distance, both by the radius at the step; zenith cosine; altitude, m), (table's row; sine and cosine of the horizon's
     /// dip; 0), (share of the light of a unit source that arrives, rgb; 0), (the same of each class of layers).
-    /// A kernel, by altitude, view and direction: the modes of red, of green, of blue. In deep air [`SEED_ROWS`] more.
+    /// A kernel, by altitude, view and direction: the modes of red, of green, of blue. In deep air [`streams::ROWS`] more, or these alone.
     pub rows: Vec<[f32; 4]>,
-    /// Orders to compute before they are combined.
+    /// Orders to compute before they are combined; 0: none, and nothing of what they need is in the rows.
     pub orders: u32,
-    /// Which of them is a two-stream solution in deep air, not the order after the one before; 0: none.
-    pub seed: u32,
+    /// Row at which the solution of deep air begins.
+    pub deep: Option<u32>,
 }
 
 /// One direction from an altitude.
@@ -102,33 +99,46 @@ impl Plan {
     /// For a medium.
     pub fn new(medium: &Medium) -> Self {
         let classes = classes(medium);
-        let column = Column::new(medium, &classes);
-        let deep = column.is_deep();
-        let mut rows = Vec::with_capacity(ROWS);
-        let [mut kernels, mut drawn] = [(); 2].map(|()| Vec::with_capacity(DRAWN_AT - KERNELS_AT));
-        let (levels, matter) = (Levels::new(medium), Matter::new(medium, &classes));
-        let around: Vec<_> = (0..VIEWS).map(view_cosine).map(Around::new).collect();
-        for row in 0..ALTITUDES {
-            let altitude_m = levels.altitude_m(row);
-            let directions = directions(medium, altitude_m);
-            for (i, direction) in directions.iter().enumerate() {
-                paths::rows(&matter, &levels, altitude_m, direction, i >= UP, &mut rows);
-            }
-            let shares = shares(medium, &classes, &levels, row);
-            kernel_rows(&classes, shares, (&directions, horizon(medium, altitude_m)), &around, [&mut kernels, &mut drawn]);
+        let share = streams::share(medium, &Classes::of(medium).list);
+        let levels = Levels::new(medium);
+        let mut plan = Self { rows: Vec::new(), orders: 0, deep: None };
+        if share.min_element() < 1.0 {
+            plan.orders = orders(medium, share);
+            plan.rows = rows(medium, &classes, &levels);
         }
-        rows.append(&mut kernels);
-        rows.append(&mut drawn);
-        if deep {
-            rows.extend(two_stream::rows(&column));
-            return Self { rows, orders: 2 * BEFORE_SEED + 1, seed: BEFORE_SEED };
+        if share.max_element() > 0.0 {
+            plan.deep = Some(plan.rows.len() as u32);
+            let (altitudes, shares): (Vec<_>, Vec<_>) =
+                (0..ALTITUDES).map(|row| (levels.altitude_m(row), shares(medium, &classes, &levels, row))).unzip();
+            plan.rows.append(&mut streams::rows(&Column::new(medium, &classes), share, &altitudes, &shares));
         }
-        Self { rows, orders: orders(medium), seed: 0 }
+        plan
     }
 }
 
-/// How many orders tell the sum of all: more where light is scattered more often before it leaves.
-fn orders(medium: &Medium) -> u32 {
+/// All that the orders need.
+fn rows(medium: &Medium, classes: &[(Class, Truncated)], levels: &Levels) -> Vec<[f32; 4]> {
+    let mut rows = Vec::with_capacity(ROWS);
+    let [mut kernels, mut drawn] = [(); 2].map(|()| Vec::with_capacity(DRAWN_AT - KERNELS_AT));
+    let matter = Matter::new(medium, classes);
+    let around: Vec<_> = (0..VIEWS).map(view_cosine).map(Around::new).collect();
+    for row in 0..ALTITUDES {
+        let altitude_m = levels.altitude_m(row);
+        let directions = directions(medium, altitude_m);
+        for (i, direction) in directions.iter().enumerate() {
+            paths::rows(&matter, levels, altitude_m, direction, i >= UP, &mut rows);
+        }
+        let shares = shares(medium, classes, levels, row);
+        kernel_rows(classes, shares, (&directions, horizon(medium, altitude_m)), &around, [&mut kernels, &mut drawn]);
+    }
+    rows.append(&mut kernels);
+    rows.append(&mut drawn);
+    rows
+}
+
+/// How many orders tell the sum of all: more where light is scattered more often before it leaves. Channels that the solution of deep air has to
+/// the full do not ask for any.
+fn orders(medium: &Medium, deep: DVec3) -> u32 {
     let mut depth = DVec3::ZERO;
     let n = 64;
     for layer in &medium.layers {
@@ -138,12 +148,12 @@ fn orders(medium: &Medium) -> u32 {
             depth += layer.scattering_per_m.as_dvec3() * (layer.profile.density(x * x * medium.top_altitude_m) * width);
         }
     }
-    let depth = depth.max_element();
+    let depth = (0..3).filter(|c| deep[*c] < 1.0).map(|c| depth[c]).fold(0.0, f64::max);
     [(0.5, 4), (3.0, 5), (8.0, 6)].into_iter().find(|(limit, _)| depth < *limit).map_or(MAX_ORDERS, |(_, n)| n)
 }
 
 /// Nodes and weights of Gauss–Legendre quadrature on [0, 1].
-fn gauss_legendre(n: usize) -> Vec<(f64, f64)> {
+pub(super) fn gauss_legendre(n: usize) -> Vec<(f64, f64)> {
     let count = n as f64;
     (0..n)
         .map(|i| {
@@ -227,7 +237,7 @@ pub(super) fn row3(v: DVec3, w: f64) -> [f32; 4] {
 }
 
 /// Zenith cosine of a table's view.
-fn view_cosine(view: usize) -> f64 {
+pub fn view_cosine(view: usize) -> f64 {
     let x = 2.0 * view as f64 / (VIEWS - 1) as f64 - 1.0;
     x.signum() * (1.0 - (1.0 - x.abs()) * (1.0 - x.abs()))
 }
@@ -413,7 +423,7 @@ mod tests {
         let mut found = Vec::new();
         for scale in [0.05, 1.0, 8.0, 20.0, 400.0] {
             medium.layers[0].scattering_per_m = Vec3::new(5.802e-6, 13.558e-6, 33.1e-6) * scale;
-            found.push(orders(&medium));
+            found.push(orders(&medium, DVec3::ZERO));
         }
         assert_eq!(found, [4, 4, 5, 6, MAX_ORDERS]);
     }

@@ -34,7 +34,7 @@ impl SunMap {
     }
 
     /// Zenith cosine of the `k`-th sun of a table, where the horizon dips by so much (sine, cosine); the inverse of the above.
-    pub(super) fn mu(&self, (sine, cosine): (f64, f64), k: usize) -> f64 {
+    pub fn mu(&self, (sine, cosine): (f64, f64), k: usize) -> f64 {
         let y = k as f64 / (SUNS - 1) as f64 / self.inverse - self.low;
         let above = y - libm::asinh(self.knee * self.scale);
         let t = if above > 0.0 { self.knee * (1.0 + above) } else { libm::sinh(y) / self.scale };

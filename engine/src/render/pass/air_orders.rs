@@ -30,7 +30,6 @@ pub struct OrdersBaker {
     first: wgpu::ComputePipeline,
     next: wgpu::ComputePipeline,
     turn: wgpu::ComputePipeline,
-    seed: wgpu::ComputePipeline,
     products: wgpu::ComputePipeline,
     sum: wgpu::ComputePipeline,
     gathered: wgpu::Buffer,
@@ -89,6 +88,7 @@ impl OrdersBaker {
             written(7, TextureViewDimension::D3),
             written(8, TextureViewDimension::D2Array),
             storage(9, true),
+            storage(10, true),
         ]);
         let module = shaders.load(&gpu.device, "pass/air_orders.wgsl")?;
         let sum_module = shaders.load(&gpu.device, "pass/air_orders_sum.wgsl")?;
@@ -105,7 +105,6 @@ impl OrdersBaker {
             first: compute_pipeline(gpu, "air_orders", &module, &[&each], "first"),
             next: compute_pipeline(gpu, "air_orders", &module, &[&each], "next"),
             turn: compute_pipeline(gpu, "air_orders", &module, &[&each], "turn"),
-            seed: compute_pipeline(gpu, "air_orders", &module, &[&each], "seed"),
             products: compute_pipeline(gpu, "air_orders_sum", &sum_module, &[&all], "products"),
             sum: compute_pipeline(gpu, "air_orders_sum", &sum_module, &[&all], "sum"),
             layout: each,
@@ -147,8 +146,9 @@ impl OrdersBaker {
         let buffer = |contents: &[u8], usage| {
             gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some("air orders"), contents, usage })
         };
-        let orders = plan.orders.clamp(2, MAX_ORDERS);
-        let seed = plan.seed;
+        let orders = if plan.orders > 0 { plan.orders.clamp(2, MAX_ORDERS) } else { 0 };
+        let deep = plan.deep.unwrap_or(0);
+        let is_deep = u32::from(plan.deep.is_some());
         let plan = buffer(bytemuck::cast_slice(&plan.rows), BufferUsages::STORAGE);
         let (directions, views, altitudes) = (DIRECTIONS as u32, VIEWS as u32, ALTITUDES as u32);
         for order in 0..orders {
@@ -170,16 +170,12 @@ impl OrdersBaker {
                 ],
             );
             pass.set_bind_group(0, &group, &[]);
-            if order > 0 && order == seed {
-                pass.set_pipeline(&self.seed);
-            } else {
-                pass.set_pipeline(if order == 0 { &self.first } else { &self.next });
-                pass.dispatch_workgroups(directions, altitudes, 1);
-                pass.set_pipeline(&self.turn);
-            }
+            pass.set_pipeline(if order == 0 { &self.first } else { &self.next });
+            pass.dispatch_workgroups(directions, altitudes, 1);
+            pass.set_pipeline(&self.turn);
             pass.dispatch_workgroups(views, altitudes, 1);
         }
-        let number = buffer(bytemuck::bytes_of(&[0, orders, inputs.slot, seed]), BufferUsages::UNIFORM);
+        let number = buffer(bytemuck::bytes_of(&[deep, orders, inputs.slot, is_deep]), BufferUsages::UNIFORM);
         let group = bind(
             gpu,
             &self.sum_layout,
@@ -191,10 +187,11 @@ impl OrdersBaker {
                 (7, BindingResource::TextureView(&self.view())),
                 (8, BindingResource::TextureView(inputs.irradiance)),
                 (9, self.drawn.as_entire_binding()),
+                (10, plan.as_entire_binding()),
             ],
         );
         pass.set_bind_group(0, &group, &[]);
-        if seed == 0 {
+        if orders > 0 {
             pass.set_pipeline(&self.products);
             pass.dispatch_workgroups(orders - 1, orders, 1);
         }
