@@ -29,7 +29,6 @@ use crate::space::relative::narrow;
 use core::f64::consts::PI;
 use glam::DVec3;
 
-pub(super) use super::paths::step_at;
 pub use super::sun_map::SunMap;
 
 /// Heights of the sun in a table.
