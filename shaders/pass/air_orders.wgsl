@@ -7,8 +7,8 @@
 #include "lib/air_orders_plan.wgsl"
 
 const SUN_RAD: f32 = 0.0047;
-// Cosines of azimuths of half the circle, the other half is its mirror image: denser towards the sun, at 8 squares-like parts (π x^1.4). The weights are
-// exact for the products of any two modes.
+// Cosines of azimuths of half the circle; the other half is its mirror image. Denser towards the sun, where hazes glow: π x^1.4 of the middles x of even
+// parts; the weights make sums of cos mφ exact to m = 6, so for the product of any two modes.
 const AZIMUTHS: u32 = 8u;
 const COSINE: array<f32, 8> = array<f32, 8>(0.9979031, 0.9548789, 0.8159015, 0.5508123, 0.1661697, -0.2844450, -0.7020766, -0.9633941);
 const WEIGHT: array<f32, 8> = array<f32, 8>(0.0552600, 0.0861067, 0.1116115, 0.1255524, 0.1385673, 0.1512886, 0.1603287, 0.1712848);

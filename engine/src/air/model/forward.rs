@@ -12,7 +12,7 @@ use core::f64::consts::PI;
 /// Half width of a peak that is cut off, rad.
 pub(super) const EDGE: f64 = 0.18;
 /// A smaller share is left where it is.
-const LEAST: f64 = 0.02;
+const LEAST: f64 = 0.01;
 /// Degree at which the series of a blurred phase function ends: twice blurred, a peak 0.01 rad wide is below 1e-2 there.
 const BLURRED_DEGREE: usize = 320;
 
@@ -124,7 +124,7 @@ mod tests {
             assert!((left - cut.left).abs() < 2e-4, "{phase:?}: {left} {}", cut.left);
             shares.push(cut.share);
         }
-        assert!(shares.windows(2).all(|w| w[0] < w[1]) && shares[0] > 0.02 && shares[2] < 1.0, "{shares:?}");
+        assert!(shares.windows(2).all(|w| w[0] < w[1]) && shares[0] > 0.015 && shares[2] < 1.0, "{shares:?}");
     }
 
     #[test]

@@ -6,12 +6,13 @@
 //! first four Fourier modes: `S = S₀ + S₁ cos φ + S₂ cos 2φ + S₃ cos 3φ`, each a table over altitude × sun × view.
 //!
 //! One order follows from the one before in two steps, which `shaders/pass/air_orders.wgsl` takes for all texels at once:
-//! - *gather*: along fixed directions from each altitude (Gauss–Legendre nodes in the zenith angle, dense at the horizon; even azimuths) the
+//! - *gather*: along fixed directions from each altitude (Gauss–Legendre nodes in the zenith angle, dense at the horizon; azimuths dense
+//!   towards the sun, in steps that [`super::paths`] lays) the
 //!   source of the order before is added up step by step, ground included: the radiance `L`, by its Fourier modes in the azimuth;
 //! - *turn*: `S_m(v) = Σ K_m(v, ω) L_m(ω)`, K the phase function's own modes in the azimuth between v and ω.
 //!
 //! Forward peaks are cut off first ([`super::forward`]): to the orders the light that they turn is sunlight still, or goes on along its
-//! direction. For what is drawn a second set of kernels puts it back, blurred as far as the directions lie apart.
+//! direction. For what is drawn a second set of kernels puts it back; forward lobes are integrated about the view ([`super::peaks`]).
 //!
 //! In deep air a solution of another kind takes the place of the orders ([`super::streams`]), over a range of depths by shares.
 //!
