@@ -7,7 +7,7 @@
 
 #include "lib/sunlight.wgsl"
 
-const SHEET: f32 = 64.0;  // texels each way: SHEET of engine/src/render/pass/eclipse_rings.rs
+const SHEET: f32 = 80.0;  // texels each way: SHEET of engine/src/render/pass/eclipse_rings.rs
 
 // What a ring's second moment weighs in light scattered across it, over the square of the sine of the eye's zenith angle: Rayleigh's half, less
 // what does not come level.
