@@ -110,11 +110,16 @@ fn air_march(
         loop {
             let n = air_nodes(air, path, begin, next, i, panels);
             // What comes from around is found at the two Gauss points of the panel, evenly between and beyond: its integral is exact to third order.
-            var further: array<Further, 2>;
-            for (var turn = 0u; turn < eclipsed; turn++) {
-                let at = air_panel_places(path, begin, next, (f32(i) + GAUSS_TWO) / f32(panels));
-                further[0] = air_further(air, along, sheets, linear, body, star, at.x);
-                further[1] = air_further(air, along, sheets, linear, body, star, at.y);
+            var middling = Further(vec3<f32>(0.0), vec3<f32>(0.0));
+            var growth = Further(vec3<f32>(0.0), vec3<f32>(0.0));
+            for (var k = 0u; k < 2u * eclipsed; k++) {
+                let at = select(GAUSS_TWO.x, GAUSS_TWO.y, k == 1u);
+                let found = air_further(air, along, sheets, linear, body, star, air_panel_places(path, begin, next, vec2<f32>(f32(i) + at) / f32(panels)).x);
+                let slope = (at - 0.5) / ((GAUSS_TWO.y - GAUSS_TWO.x) * (GAUSS_TWO.y - 0.5));
+                middling.around += 0.5 * found.around;
+                middling.own += 0.5 * found.own;
+                growth.around += slope * found.around;
+                growth.own += slope * found.own;
             }
             let m0 = air_matter(air, media, slot, n.altitude.x);
             let m1 = air_matter(air, media, slot, n.altitude.y);
@@ -136,8 +141,8 @@ fn air_march(
                 }
                 var diffuse = vec3<f32>(1.0);
                 for (var turn = 0u; turn < eclipsed; turn++) {
-                    let part = (dot(GAUSS_X, one) - GAUSS_TWO.x) / (GAUSS_TWO.y - GAUSS_TWO.x);
-                    diffuse = max(mix(further[0].around, further[1].around, part), vec3<f32>(0.0)) + mix(further[0].own, further[1].own, part) * direct;
+                    let x = dot(GAUSS_X, one) - 0.5;
+                    diffuse = max(middling.around + x * growth.around, vec3<f32>(0.0)) + (middling.own + x * growth.own) * direct;
                 }
                 // Where a point stands for much optical depth, the collocation overshoots: there its source is taken as even over its share.
                 let own = depths * (GAUSS_WEIGHT * one);

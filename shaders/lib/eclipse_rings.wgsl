@@ -7,7 +7,7 @@
 
 #include "lib/sunlight.wgsl"
 
-const SHEET: f32 = 64.0;  // texels each way: SHEET of engine/src/render/pass/eclipse_rings.rs
+const SHEET: f32 = 80.0;  // texels each way: SHEET of engine/src/render/pass/eclipse_rings.rs
 
 // What a ring's second moment weighs in light scattered across it, over the square of the sine of the eye's zenith angle: Rayleigh's half, less
 // what does not come level.
@@ -34,7 +34,7 @@ fn sheet_level(first: vec3<f32>, up: vec3<f32>) -> mat2x3<f32> {
     return mat2x3<f32>(ahead, cross(up, ahead));
 }
 
-// Of each ring its weight in what is scattered at a point: seen along `ray`; on level ground.
+// A moment of each ring's free fraction at a point.
 fn sheet_at(sheets: texture_2d_array<f32>, linear: sampler, body: Body, frame: mat3x3<f32>, i: u32, point: vec3<f32>, moment: i32) -> vec4<f32> {
     let d = point - body.occluders[i].xyz;
     let t = sheet_place(body.sheets[2u * i + 1u], vec2<f32>(dot(d, frame[0]), dot(d, frame[1])));

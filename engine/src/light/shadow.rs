@@ -136,8 +136,8 @@ mod tests {
 
     #[test]
     fn a_sheet_keeps_its_rings() {
-        // As pass/eclipse_rings.wgsl fills it and lib/eclipse_rings.wgsl reads it: 64 texels each way, 12 azimuths, even in between.
-        const N: usize = 64;
+        // As pass/eclipse_rings.wgsl fills it and lib/eclipse_rings.wgsl reads it: 80 texels each way, 12 azimuths, even in between.
+        const N: usize = 80;
         let ground_m = 6371.0 * KM;
         let sun = ((DVec3::new(0.8, 0.3, 0.52)).normalize() * AU, 695_700.0 * KM);
         let to_moon = sun.0.normalize() * 3.66e8 + sun.0.normalize().any_orthonormal_vector() * 4.0e6;

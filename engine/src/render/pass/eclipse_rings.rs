@@ -19,7 +19,7 @@ use wgpu::util::DeviceExt as _;
 use wgpu::{BindGroupEntry, BindingResource, BufferUsages, TextureUsages, TextureViewDimension};
 
 /// Texels of a sheet each way: `SHEET` of `shaders/lib/eclipse_rings.wgsl`.
-const SHEET: u32 = 64;
+const SHEET: u32 = 80;
 /// Sheets that are kept.
 const KEPT: u32 = 8;
 /// Layers of one.
