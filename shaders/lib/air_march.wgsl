@@ -112,14 +112,17 @@ fn air_march(
             // What comes from around is found at the two Gauss points of the panel, evenly between and beyond: its integral is exact to third order.
             var middling = Further(vec3<f32>(0.0), vec3<f32>(0.0));
             var growth = Further(vec3<f32>(0.0), vec3<f32>(0.0));
-            for (var k = 0u; k < 2u * eclipsed; k++) {
-                let at = select(GAUSS_TWO.x, GAUSS_TWO.y, k == 1u);
-                let found = air_further(air, along, sheets, linear, body, star, air_panel_places(path, begin, next, vec2<f32>(f32(i) + at) / f32(panels)).x);
-                let slope = (at - 0.5) / ((GAUSS_TWO.y - GAUSS_TWO.x) * (GAUSS_TWO.y - 0.5));
-                middling.around += 0.5 * found.around;
-                middling.own += 0.5 * found.own;
-                growth.around += slope * found.around;
-                growth.own += slope * found.own;
+            if AIR_ECLIPSES {
+                for (var turn = 0u; turn < 2u * eclipsed; turn++) {
+                    let at = select(GAUSS_TWO.x, GAUSS_TWO.y, turn == 1u);
+                    let place = air_panel_places(path, begin, next, vec2<f32>(f32(i) + at) / f32(panels)).x;
+                    let found = air_further(air, along, sheets, linear, body, star, place);
+                    let slope = (at - 0.5) / ((GAUSS_TWO.y - GAUSS_TWO.x) * (GAUSS_TWO.y - 0.5));
+                    middling.around += 0.5 * found.around;
+                    middling.own += 0.5 * found.own;
+                    growth.around += slope * found.around;
+                    growth.own += slope * found.own;
+                }
             }
             let m0 = air_matter(air, media, slot, n.altitude.x);
             let m1 = air_matter(air, media, slot, n.altitude.y);
@@ -136,13 +139,15 @@ fn air_march(
                 let one = select(vec4<f32>(0.0), ONES, vec4<u32>(0u, 1u, 2u, 3u) == vec4<u32>(j));
                 let s = dot(n.s, one);
                 var direct = free;
-                for (var turn = 0u; turn < select(0u, 1u, free < 0.0); turn++) {
-                    direct = eclipse_visible(body, star, ray * (path.start + s));
-                }
                 var diffuse = vec3<f32>(1.0);
-                for (var turn = 0u; turn < eclipsed; turn++) {
-                    let x = dot(GAUSS_X, one) - 0.5;
-                    diffuse = max(middling.around + x * growth.around, vec3<f32>(0.0)) + (middling.own + x * growth.own) * direct;
+                if AIR_ECLIPSES {
+                    for (var turn = 0u; turn < select(0u, 1u, free < 0.0); turn++) {
+                        direct = eclipse_visible(body, star, ray * (path.start + s));
+                    }
+                    for (var turn = 0u; turn < eclipsed; turn++) {
+                        let x = dot(GAUSS_X, one) - 0.5;
+                        diffuse = max(middling.around + x * growth.around, vec3<f32>(0.0)) + (middling.own + x * growth.own) * direct;
+                    }
                 }
                 // Where a point stands for much optical depth, the collocation overshoots: there its source is taken as even over its share.
                 let own = depths * (GAUSS_WEIGHT * one);

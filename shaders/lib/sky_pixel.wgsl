@@ -9,10 +9,9 @@
 
 const SKY_SETTINGS: u32 = 8u;
 const SKY_SINGLE: u32 = 1u;  // flag: orders beyond the first are left out (probes only)
-const SKY_HELD: u32 = 2u;    // flag: it lies in another's air
 
 struct Sky {
-    ids: vec4<u32>,                              // index of the body; steps of a long march; flags; of a front: index of the bank; with SKY_HELD: of the body whose air it is
+    ids: vec4<u32>,                              // index of the body; steps of a long march; flags; of a front: index of the bank; of a bank: of the body whose air it is in
     settings: array<vec4<f32>, SKY_SETTINGS>,    // the model's numbers, in its own order
 }
 

@@ -10,9 +10,12 @@
 @group(3) @binding(0) var front_radiance: texture_2d<f32>;
 @group(3) @binding(1) var front_transmittance: texture_2d<f32>;
 
+// Set to true in the pipeline for a bank within another's air.
+override IN_AIR: bool = false;
+
 fn sky_light(body: Body, star: vec4<f32>, view: SkyView) -> AirLight {
     let air = airs.list[u32(body.ids.z)];
-    if (sky.ids.z & SKY_HELD) == 0u {
+    if !IN_AIR {
         return in_starlight(body, thickness_light(body, air, star, sky, view));
     }
     let path = thickness_path(body, air, sky, view);

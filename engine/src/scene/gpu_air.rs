@@ -217,8 +217,6 @@ pub fn media_rows(medium: &Medium, classes: &Classes) -> Vec<[f32; 4]> {
 pub const SKY_SETTINGS: usize = 8;
 /// Flag of [`SkyUniform`]: orders of scattering beyond the first are left out. `SKY_SINGLE` of the shader.
 pub const SKY_SINGLE: u32 = 1;
-/// Flag of [`SkyUniform`]: what is drawn lies in another's air. `SKY_HELD` of the shader.
-pub const SKY_HELD: u32 = 2;
 
 /// What a model tells its shader of one body, in the model's own order.
 pub type SkySettings = [[f32; 4]; SKY_SETTINGS];

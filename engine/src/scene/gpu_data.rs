@@ -6,8 +6,8 @@
 //! air are in `gpu_terrain.rs` and `gpu_air.rs`.
 
 pub use super::gpu_air::{
-    AirUniform, AirsUniform, MAX_AIRS, MEDIA_COLUMNS, MEDIA_ROWS, PhasesUniform, SKY_HELD, SKY_SETTINGS, SKY_SINGLE, SkySettings,
-    SkyUniform, ViewTableUniform, media_rows,
+    AirUniform, AirsUniform, MAX_AIRS, MEDIA_COLUMNS, MEDIA_ROWS, PhasesUniform, SKY_SETTINGS, SKY_SINGLE, SkySettings, SkyUniform,
+    ViewTableUniform, media_rows,
 };
 use super::second_light::{self, SecondLight};
 use super::{Body, Camera, Ship, Snapshot, Surface};

@@ -25,7 +25,7 @@ use crate::render::pipeline::{PipelineKind, depth_entry, storage_entry, texture_
 use crate::render::report::AirReport;
 use crate::render::shared::{FrameContext, Mirror, Shared};
 use crate::render::targets::HDR;
-use crate::scene::gpu_data::{MAX_AIRS, SKY_HELD, SkySettings, SkyUniform};
+use crate::scene::gpu_data::{MAX_AIRS, SkySettings, SkyUniform};
 use crate::scene::{Body, Snapshot, Surface};
 use bytemuck::Zeroable;
 use choose::{Choice, Rect};
@@ -310,7 +310,7 @@ impl Sky {
             let Some(painter) = self.painters.get(painter_of(&air.model)) else { continue };
             let Some(body) = f.scene.bodies.get(choice.body as usize) else { continue };
             let holder = choice.held_by.and_then(|by| u32::try_from(by).ok()).filter(|_| matches!(body.surface, Surface::Nothing));
-            let ids = holder.map_or([choice.body, self.steps, 0, 0], |by| [choice.body, self.steps, SKY_HELD, by]);
+            let ids = holder.map_or([choice.body, self.steps, 0, 0], |by| [choice.body, self.steps, by]);
             let mut settings = painter.settings_in(f.scene, body, air);
             painter.place(&mut settings, choice.rect);
             uniform.write(&f.gpu.queue, &SkyUniform { ids, settings });

@@ -22,7 +22,9 @@ use wgpu::{BindGroupEntry, BindingResource};
 pub fn make(parts: &Parts<'_>) -> Result<Box<dyn Painter>, RenderError> {
     let kind = PainterKind::new(parts, "pass/sky_thickness.wgsl", &[0, 1].map(|i| texture_entry(i, wgpu::TextureViewDimension::D2)))?;
     let groups = [&parts.shared.frame_layout, &parts.shared.light_layout, parts.picture, &kind.own_layout];
-    let held = PipelineKind { entry: "held", ..PipelineKind::full_screen("sky", &kind.module, &groups, HDR) }.make(parts.gpu);
+    let held =
+        PipelineKind { entry: "held", constants: &[("IN_AIR", 1.0)], ..PipelineKind::full_screen("sky", &kind.module, &groups, HDR) }
+            .make(parts.gpu);
     let dark = Texture::new(&parts.gpu.device, "no air", [1, 1], HDR, wgpu::TextureUsages::TEXTURE_BINDING);
     let none = group(parts.gpu, &kind.own_layout, [&dark.view; 2]);
     Ok(Box::new(Thickness { kind, held, none, front: None }))
