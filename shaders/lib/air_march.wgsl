@@ -69,11 +69,12 @@ fn air_panels(air: Air, media: texture_2d_array<f32>, slot: i32, along: AirRay, 
 
 // What of a point's further orders its surroundings and its own place have in an eclipse.
 fn air_further(
-    air: Air, along: AirRay, sheets: texture_2d_array<f32>, linear: sampler, body: Body, star: vec4<f32>, s: f32,
+    air: Air, along: AirRay, sheets: texture_2d_array<f32>, linear: sampler, sheet: Sheet, centre: vec3<f32>, s: f32,
 ) -> Further {
     let rings = air_rings(
         air, air_altitude(air, along.path, s), (along.up_sun + s * along.ray_sun) / air.shape.x, (along.path.slope + s) / air.shape.x);
-    return eclipse_further(rings, eclipse_around_seen(sheets, linear, body, star, along.ray * (along.path.start + s), along.ray));
+    let point = along.ray * (along.path.start + s);
+    return eclipse_further(rings, sheet_seen(sheets, linear, sheet, normalize(point - centre), point, along.ray));
 }
 
 // From the path's start to `end` metres further; `count` points on a long stretch. `ray` is the direction of sight, `star` the star's sphere.
@@ -87,12 +88,14 @@ fn air_march(
         path, ray, path.radius * dot(path.up, sun.direction), cosine, air_phase(air, media, slot, cosine) * sun.single,
         air_aureole(air, media, slot, cosine) * sun.single, 2 * slot + i32(sun.multiple));
     let night = air_night(air.shape.x, path, along.up_sun, cosine, sun.angular_radius, end);
-    var shade = AirShade(vec4<f32>(-1.0), 0u);
+    var shade = AirShade(vec4<f32>(-1.0), 0u, 0u);
     if AIR_ECLIPSES && body.ids.y > 0 {
         shade = air_shade(body, star, ray * path.start, ray, end, air.rings[3].w);
     }
     // Loops of one turn or none, and not branches: where a processor stands in for a GPU it takes both sides of a branch.
     let eclipsed = min(shade.count, 1u);
+    // Asked once a ray: a list asked by an index is copied whole.
+    let sheet = sheet_of(body, star, shade.deepest);
     let most = max(count / 4u, 1u);
 
     var out = AirLight(vec3<f32>(0.0), vec3<f32>(1.0));
@@ -116,7 +119,7 @@ fn air_march(
                 for (var turn = 0u; turn < 2u * eclipsed; turn++) {
                     let at = select(GAUSS_TWO.x, GAUSS_TWO.y, turn == 1u);
                     let place = air_panel_places(path, begin, next, vec2<f32>(f32(i) + at) / f32(panels)).x;
-                    let found = air_further(air, along, sheets, linear, body, star, place);
+                    let found = air_further(air, along, sheets, linear, sheet, body.centre.xyz, place);
                     let slope = (at - 0.5) / ((GAUSS_TWO.y - GAUSS_TWO.x) * (GAUSS_TWO.y - 0.5));
                     middling.around += 0.5 * found.around;
                     middling.own += 0.5 * found.own;
@@ -141,7 +144,10 @@ fn air_march(
                 var direct = free;
                 var diffuse = vec3<f32>(1.0);
                 if AIR_ECLIPSES {
-                    for (var turn = 0u; turn < select(0u, 1u, free < 0.0); turn++) {
+                    for (var turn = 0u; turn < select(0u, 1u, free < 0.0 && shade.count == 1u); turn++) {
+                        direct = visible_behind(sheet.ball, star_seen(star, ray * (path.start + s)), ray * (path.start + s));
+                    }
+                    for (var turn = 0u; turn < select(0u, 1u, shade.count > 1u); turn++) {
                         direct = eclipse_visible(body, star, ray * (path.start + s));
                     }
                     for (var turn = 0u; turn < eclipsed; turn++) {

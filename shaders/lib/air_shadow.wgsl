@@ -37,12 +37,13 @@ fn air_night(bottom: f32, path: AirPath, up_sun: f32, ray_sun: f32, sun_rad: f32
 struct AirShade {
     cuts: vec4<f32>,  // where umbra and penumbra of the deepest shadow begin and end; negative: nowhere
     count: u32,       // how many shadows touch the ray
+    deepest: u32,     // occluder that throws that
 }
 
 // Shadows of the body's occluders on the ray from `point` (m from the camera) to `end` metres further; `reach`: how far beyond a
 // penumbra light scattered from within it still counts.
 fn air_shade(body: Body, star: vec4<f32>, point: vec3<f32>, ray: vec3<f32>, end: f32, reach: f32) -> AirShade {
-    var out = AirShade(vec4<f32>(-1.0), 0u);
+    var out = AirShade(vec4<f32>(-1.0), 0u, 0u);
     let count = min(u32(body.ids.y), MAX_OCCLUDERS);
     var deepest = 1e30;
     for (var i = 0u; i < count; i++) {
@@ -71,6 +72,7 @@ fn air_shade(body: Body, star: vec4<f32>, point: vec3<f32>, ray: vec3<f32>, end:
         let nearest = length(p0 + p1 * clamp(-dot(p0, p1) / max(dot(p1, p1), 1e-12), 0.0, end)) / max(r0.y, 1.0);
         if nearest < deepest {
             deepest = nearest;
+            out.deepest = i;
             out.cuts = vec4<f32>(cone_cut(p0, p1, r0.x, r1.x, end), cone_cut(p0, p1, r0.y, r1.y, end));
         }
     }

@@ -15,9 +15,10 @@ const AZIMUTHS: u32 = 12u;
 fn bake(@builtin(global_invocation_id) id: vec3<u32>) {
     let body = bodies.list[asked.x];
     let star = frame.star;
-    let ball = body.occluders[asked.y];
-    let axes = sheet_frame(body, star, asked.y);
-    let x = sheet_offset(body.sheets[2u * asked.y + 1u], 2.0 * vec2<f32>(id.xy) / (SHEET - 1.0) - 1.0);
+    let sheet = sheet_of(body, star, asked.y);
+    let ball = sheet.ball;
+    let axes = sheet.axes;
+    let x = sheet_offset(sheet.shape, 2.0 * vec2<f32>(id.xy) / (SHEET - 1.0) - 1.0);
     // On the ground of the day side; beyond the limb, in the plane of the limb.
     let from_ball = body.centre.xyz - ball.xyz;
     let aside = axes[0] * (x.x - dot(from_ball, axes[0])) + axes[1] * (x.y - dot(from_ball, axes[1]));

@@ -310,7 +310,7 @@ impl Sky {
             let Some(painter) = self.painters.get(painter_of(&air.model)) else { continue };
             let Some(body) = f.scene.bodies.get(choice.body as usize) else { continue };
             let holder = choice.held_by.and_then(|by| u32::try_from(by).ok()).filter(|_| matches!(body.surface, Surface::Nothing));
-            let ids = holder.map_or([choice.body, self.steps, 0, 0], |by| [choice.body, self.steps, by]);
+            let ids = [choice.body, self.steps, 0, holder.unwrap_or(0)];
             let mut settings = painter.settings_in(f.scene, body, air);
             painter.place(&mut settings, choice.rect);
             uniform.write(&f.gpu.queue, &SkyUniform { ids, settings });
