@@ -10,7 +10,7 @@
 @group(3) @binding(0) var front_radiance: texture_2d<f32>;
 @group(3) @binding(1) var front_transmittance: texture_2d<f32>;
 
-// Set to true in the pipeline for a bank within another's air.
+// Set to true in the pipeline for a bank within another's air whose tables tell what it lets through.
 override IN_AIR: bool = false;
 
 fn sky_light(body: Body, star: vec4<f32>, view: SkyView) -> AirLight {

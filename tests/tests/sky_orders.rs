@@ -200,7 +200,7 @@ fn the_sky_s_irradiance_is_the_integral_of_its_radiance() {
             worst = worst.max(error.abs().max_element());
         }
     }
-    assert!((0.015..0.025).contains(&worst), "{worst}");
+    assert!((0.033..0.055).contains(&worst), "{worst}");
 }
 
 #[test]

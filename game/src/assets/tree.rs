@@ -7,6 +7,7 @@
 //! Not here: what the keys mean ([`super::reader`]).
 
 use super::fault::{At, Fault, Source, nearest};
+use std::collections::BTreeSet;
 use std::sync::Arc;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -164,9 +165,11 @@ fn change(list: &mut Vec<Node>, changes: Vec<Entry>, faults: &mut Vec<Fault>) {
 /// A list laid over one that has an item of the same name: it stands for all of the other, where a change of that item was likely meant.
 fn whole(old: &Node, new: &Entry) -> Option<Fault> {
     let (Data::Array(old), Data::Array(list)) = (&old.data, &new.value.data) else { return None };
-    let named = |name: &str| old.iter().any(|item| item.name() == Some(name));
-    let tables = list.iter().filter(|item| matches!(item.data, Data::Table(_)));
-    let name = tables.filter_map(Node::name).find(|name| named(name)).filter(|_| old.len() > list.len())?;
+    // Items without a name of their own cannot be changed by it.
+    let names = |list: &[Node]| list.iter().map(|item| item.name().map(str::to_owned)).collect::<Option<BTreeSet<_>>>();
+    let (known, given) = (names(old)?, names(list)?);
+    let apart = known.len() == old.len() && given.len() == list.len() && old.len() > list.len();
+    let name = given.intersection(&known).next().filter(|_| apart)?;
     let key = &new.key;
     let message = format!("this list takes the place of all {} of `{key}`, though `{name}` is one of them", old.len());
     let help = format!("in a patch [{key}.{name}] changes that one and [[{key}.add]] adds another");

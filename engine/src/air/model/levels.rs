@@ -124,6 +124,7 @@ impl Levels {
     }
 
     /// Altitude at a row that need not be whole, within the table, m.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
     pub fn between_m(&self, row: f64) -> f64 {
         let low = (row.max(0.0) as usize).min(ALTITUDES - 2);
         let root = self.roots[low] + (self.roots[low + 1] - self.roots[low]) * (row - low as f64).clamp(0.0, 1.0);

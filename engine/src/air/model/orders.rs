@@ -107,7 +107,7 @@ impl Plan {
             plan.rows = rows(medium, &classes, &levels);
         }
         if share.max_element() > 0.0 {
-            plan.deep = Some(plan.rows.len() as u32);
+            plan.deep = u32::try_from(plan.rows.len()).ok();
             let (altitudes, shares): (Vec<_>, Vec<_>) =
                 (0..ALTITUDES).map(|row| (levels.altitude_m(row), shares(medium, &classes, &levels, row))).unzip();
             plan.rows.append(&mut streams::rows(&Column::new(medium, &classes), share, &altitudes, &shares));

@@ -356,7 +356,7 @@ impl AirBaker {
 }
 
 /// Whether an air lights no ground, by a model that knows no tables: a bank of fog.
-const fn is_bare(body: &Body, air: &Air) -> bool {
+pub(super) const fn is_bare(body: &Body, air: &Air) -> bool {
     matches!(body.surface, Surface::Nothing) && matches!(air.model, Model::Thickness(_) | Model::Gradient(_) | Model::LimbTable(_))
 }
 

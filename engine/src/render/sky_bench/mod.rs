@@ -209,7 +209,7 @@ impl<'a> SkyBench<'a> {
                 BindGroupEntry { binding: 2, resource: self.uniform.buffer.as_entire_binding() },
             ],
         });
-        let draw = Draw { body, air: &prepared.air, rect, light: &light, picture: &picture, held: false };
+        let draw = Draw { body, air: &prepared.air, rect, light: &light, picture: &picture, held: false, lit: false };
         paint(&mut f, &mut *prepared.painter, &draw, 0, &self.targets.aerial.view, false);
         let begun = self.clock.map(|now| now());
         f.submit();

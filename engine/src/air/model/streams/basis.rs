@@ -84,7 +84,7 @@ impl Basis {
     pub fn moments(&self, sum: &Vector, difference: &Vector) -> [f64; TERMS] {
         let mut out = [0.0; TERMS];
         for (l, slot) in out.iter_mut().enumerate().skip(self.mode) {
-            let light = if (l - self.mode) % 2 == 0 { sum } else { difference };
+            let light = if (l - self.mode).is_multiple_of(2) { sum } else { difference };
             *slot = (0..STREAMS).map(|i| 2.0 * self.weight[i] * self.y[l][i] * light[i]).sum();
         }
         out

@@ -20,7 +20,7 @@ use crate::gpu::buffer::Uniform;
 use crate::gpu::texture::Texture;
 use crate::gpu::{Gpu, ShaderLibrary};
 use crate::render::RenderError;
-use crate::render::pass::air_tables::AirBaker;
+use crate::render::pass::air_tables::{AirBaker, is_bare};
 use crate::render::pipeline::{PipelineKind, depth_entry, storage_entry, texture_entry};
 use crate::render::report::AirReport;
 use crate::render::shared::{FrameContext, Mirror, Shared};
@@ -126,6 +126,8 @@ pub struct Draw<'a> {
     pub picture: &'a wgpu::BindGroup,
     /// Light and transmittance of the air in which it lies, up to it, are in the level of [`FRONT_RATE`].
     pub held: bool,
+    /// The tables of that air tell what lights the bank.
+    pub lit: bool,
 }
 
 impl PainterKind {
@@ -326,7 +328,9 @@ impl Sky {
             let picture = self.picture_group(f, &from.view, uniform);
             let held = matches!(body.surface, Surface::Nothing) && self.record_front(f, light, &from.view, i);
             let Some(painter) = self.painters.get_mut(painter_of(&air.model)) else { continue };
-            let draw = Draw { body, air, rect: choice.rect, light, picture: &picture, held };
+            let holder = choice.held_by.and_then(|by| f.scene.bodies.get(by));
+            let lit = held && holder.is_some_and(|h| h.air.as_ref().is_some_and(|air| !is_bare(h, air)));
+            let draw = Draw { body, air, rect: choice.rect, light, picture: &picture, held, lit };
             paint(f, &mut **painter, &draw, id, &into.view, choice.rect != whole);
         }
         if self.in_aerial { f.targets.aerial.view.clone() } else { f.targets.opaque.view.clone() }

@@ -22,9 +22,10 @@ use wgpu::{BindGroupEntry, BindingResource};
 pub fn make(parts: &Parts<'_>) -> Result<Box<dyn Painter>, RenderError> {
     let kind = PainterKind::new(parts, "pass/sky_thickness.wgsl", &[0, 1].map(|i| texture_entry(i, wgpu::TextureViewDimension::D2)))?;
     let groups = [&parts.shared.frame_layout, &parts.shared.light_layout, parts.picture, &kind.own_layout];
-    let held =
-        PipelineKind { entry: "held", constants: &[("IN_AIR", 1.0)], ..PipelineKind::full_screen("sky", &kind.module, &groups, HDR) }
-            .make(parts.gpu);
+    let held = [0.0, 1.0].map(|lit| {
+        let constants = &[("IN_AIR", lit)];
+        PipelineKind { entry: "held", constants, ..PipelineKind::full_screen("sky", &kind.module, &groups, HDR) }.make(parts.gpu)
+    });
     let dark = Texture::new(&parts.gpu.device, "no air", [1, 1], HDR, wgpu::TextureUsages::TEXTURE_BINDING);
     let none = group(parts.gpu, &kind.own_layout, [&dark.view; 2]);
     Ok(Box::new(Thickness { kind, held, none, front: None }))
@@ -41,12 +42,12 @@ fn group(gpu: &Gpu, layout: &wgpu::BindGroupLayout, views: [&wgpu::TextureView; 
 /// The painter.
 struct Thickness {
     kind: PainterKind,
-    /// Draws a bank within another's air.
-    held: wgpu::RenderPipeline,
+    /// Draw a bank within another's air: one of which no tables tell what it lets through, and one of which they do.
+    held: [wgpu::RenderPipeline; 2],
     /// Group 3 where nothing is read from it.
     none: wgpu::BindGroup,
-    /// Group 3 for the bank that is being drawn.
-    front: Option<wgpu::BindGroup>,
+    /// Group 3 for the bank that is being drawn, and which of [`Thickness::held`] draws it.
+    front: Option<(wgpu::BindGroup, usize)>,
 }
 
 impl Painter for Thickness {
@@ -59,13 +60,13 @@ impl Painter for Thickness {
     }
     fn before(&mut self, f: &mut FrameContext<'_>, draw: &Draw<'_>) {
         let views = f.targets.sky_at(FRONT_RATE).light.each_ref().map(|t| &t.view);
-        self.front = draw.held.then(|| group(f.gpu, &self.kind.own_layout, views));
+        self.front = draw.held.then(|| (group(f.gpu, &self.kind.own_layout, views), usize::from(draw.lit)));
     }
     fn pipeline(&self) -> &wgpu::RenderPipeline {
-        if self.front.is_some() { &self.held } else { &self.kind.pipeline }
+        self.front.as_ref().map_or(&self.kind.pipeline, |front| &self.held[front.1])
     }
     fn group(&self, _id: u16) -> &wgpu::BindGroup {
-        self.front.as_ref().unwrap_or(&self.none)
+        self.front.as_ref().map_or(&self.none, |front| &front.0)
     }
 }
 
