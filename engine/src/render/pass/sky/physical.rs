@@ -152,7 +152,7 @@ impl Painter for Physical {
     }
     fn before(&mut self, f: &mut FrameContext<'_>, draw: &Draw<'_>) {
         let medium = &draw.air.medium;
-        let smooth = Classes::of(medium).direct && medium.jumps_m(1).is_empty();
+        let smooth = Classes::of(medium).direct && medium.cuts_m(1).is_empty();
         let rates = &self.rates[match umbra_px(f.scene, draw.body, medium) {
             _ if !smooth => 0,
             None => 2,
