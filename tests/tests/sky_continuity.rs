@@ -231,9 +231,6 @@ struct Picture {
 const PITCHES_DEG: [f64; 7] = [60.0, 8.0, 0.5, -3.0, -9.0, -18.0, -80.0];
 const FOV_DEG: f64 = 3.44;
 const SIDE: u32 = 24;
-/// What a pixel jumps by at most where it goes over from cell to cell or to a march of its own, in two thousand shots: 0.9 % by day; 1.1 % when the
-/// sun is 5° under the horizon, just below the top of the air.
-const DRAWN: f64 = 0.012;
 /// Radiance, sr⁻¹ per unit of the sun's illuminance, below which a jump is one of this: a thousandth of what stored is white.
 const FLOOR: f64 = 1e-7;
 
@@ -378,11 +375,18 @@ fn a_drawn_climb_does_not_jump() {
 #[test]
 #[ignore = "minutes: seven pictures of two thousand shots under three suns"]
 fn a_drawn_climb_of_two_thousand_shots_does_not_jump() {
-    let all = climb(2000, planet("earth").medium.top_altitude_m);
-    let above: Vec<f64> = all.into_iter().filter(|h| *h >= 1.0).collect();
+    // Without those shots that lie close by another: over a step of some metres light changes by less than half floats hold, and what is even in it
+    // cannot be told.
+    let mut above: Vec<f64> = Vec::new();
+    for h in climb(2250, planet("earth").medium.top_altitude_m).into_iter().filter(|h| *h >= 1.0) {
+        if !matches!(above.as_slice(), [.., a, b] if h - b < 0.4 * (b - a)) {
+            above.push(h);
+        }
+    }
+    assert!(above.len() >= 2000, "{} shots", above.len());
     for sun_zenith in [40.0, 89.5, 95.0] {
         let everywhere = drawn_jump(std::slice::from_ref(&above), sun_zenith, true);
         let worst = drawn_jump(std::slice::from_ref(&above), sun_zenith, false);
-        assert!(everywhere.0 < BAR && worst.0 < DRAWN, "{everywhere:?} {worst:?}");
+        assert!(everywhere.0 < BAR && worst.0 < BAR, "{everywhere:?} {worst:?}");
     }
 }
