@@ -4,7 +4,7 @@
 
 use engine::air::optics::{Amount, Gas, Molecule, Refraction};
 use engine::air::reference::{Options, Ray as Sight, radiance};
-use engine::air::spectral::bands::{Bands, channel_weights};
+use engine::air::spectral::bands::{Bands, Fitting, channel_weights};
 use engine::air::spectral::rays::{Met, Ray, fitting};
 use engine::air::spectral::{Coefficients, Optics, SpectralLayer, SpectralMedium};
 use engine::air::{Air, Phase, Profile};
@@ -152,7 +152,8 @@ fn bands_fitted_to_single_scattering_serve_all_orders() {
             let errors = truth.iter().enumerate().map(|(i, truth)| shown(*truth * colour, bands.mix(|k, _| by[k][i]) * colour));
             errors.sum::<f64>() / rays.len() as f64
         };
-        let found = [Bands::three(&air, &star), Bands::six(&air, &star)].map(|b| mean(&b));
+        let fitting = Fitting::new(&air, &star);
+        let found = [fitting.three(), fitting.six()].map(|b| mean(&b));
         println!("{name}: three bands {:.2}, six {:.2}", found[0], found[1]);
         assert!(found[0] < bars[0] && found[1] < bars[1], "{name}: {found:?}");
     }

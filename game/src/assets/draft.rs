@@ -93,7 +93,7 @@ impl Draft {
         let Ok(Self { now, path, base, .. }) = Self::open(overlay, &self.body, target) else { return };
         (self.path, self.base) = (path, base);
         // Written 3.0 and read as 3, what was saved from here is no news.
-        if same(&now, &self.saved) {
+        if write::same(&now, &self.saved) {
             return;
         }
         let was_saved = self.is_saved();
@@ -208,16 +208,6 @@ impl Draft {
         }
         self.saved = self.now.clone();
         Ok(())
-    }
-}
-
-/// Whether two values mean the same.
-fn same(a: &Value, b: &Value) -> bool {
-    match (a, b) {
-        (Value::Number(a), Value::Number(b)) => a.as_f64() == b.as_f64(),
-        (Value::Array(a), Value::Array(b)) => a.len() == b.len() && a.iter().zip(b).all(|(a, b)| same(a, b)),
-        (Value::Object(a), Value::Object(b)) => a.len() == b.len() && a.iter().all(|(key, a)| b.get(key).is_some_and(|b| same(a, b))),
-        _ => a == b,
     }
 }
 

@@ -7,7 +7,7 @@
 //! Not here: what the keys mean ([`super::reader`]).
 
 use super::fault::{At, Fault, Source, nearest};
-use std::collections::BTreeSet;
+use super::write::patch;
 use std::sync::Arc;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -164,14 +164,15 @@ fn change(list: &mut Vec<Node>, changes: Vec<Entry>, faults: &mut Vec<Fault>) {
 
 /// A list laid over one that has an item of the same name: it stands for all of the other, where a change of that item was likely meant.
 fn whole(old: &Node, new: &Entry) -> Option<Fault> {
-    let (Data::Array(old), Data::Array(list)) = (&old.data, &new.value.data) else { return None };
-    // Items without a name of their own cannot be changed by it.
-    let names = |list: &[Node]| list.iter().map(|item| item.name().map(str::to_owned)).collect::<Option<BTreeSet<_>>>();
-    let (known, given) = (names(old)?, names(list)?);
-    let apart = known.len() == old.len() && given.len() == list.len() && old.len() > list.len();
-    let name = given.intersection(&known).next().filter(|_| apart)?;
+    let (Data::Array(items), Data::Array(list)) = (&old.data, &new.value.data) else { return None };
+    let known = |name: &str| items.iter().any(|item| item.name() == Some(name));
+    let name = list.iter().filter_map(Node::name).find(|name| known(name)).filter(|_| items.len() > list.len())?;
+    // Where no patch by names could say it, nothing else was meant.
+    if !matches!(patch(&old.json(), &new.value.json()), Some(serde_json::Value::Object(_))) {
+        return None;
+    }
     let key = &new.key;
-    let message = format!("this list takes the place of all {} of `{key}`, though `{name}` is one of them", old.len());
+    let message = format!("this list takes the place of all {} of `{key}`, though `{name}` is one of them", items.len());
     let help = format!("in a patch [{key}.{name}] changes that one and [[{key}.add]] adds another");
     Some(Fault::warning(&new.key_at, message).help(Some(help)))
 }

@@ -16,7 +16,8 @@ pub fn patch(base: &Value, now: &Value) -> Option<Value> {
     }
 }
 
-fn same(a: &Value, b: &Value) -> bool {
+/// Whether two values mean the same: 3 and 3.0 do.
+pub fn same(a: &Value, b: &Value) -> bool {
     match (a, b) {
         (Value::Number(a), Value::Number(b)) => a.as_f64() == b.as_f64(),
         (Value::Array(a), Value::Array(b)) => a.len() == b.len() && a.iter().zip(b).all(|(a, b)| same(a, b)),

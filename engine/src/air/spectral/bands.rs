@@ -9,7 +9,7 @@
 //! The wavelengths too are the air's own: from some that serve most airs ([`THREE_NM`], [`SIX_NM`]) each moves, a step at a time, as long as what
 //! is left of the least squares falls. An absorber of narrow bands, such as methane, needs that. [`super::study`] has the figures.
 //!
-//! Who cannot take a matrix (the older models) draws by [`rgb`]: for each channel of linear sRGB the one wavelength whose light comes closest
+//! Who cannot take a matrix (the older models) draws by [`Fitting::best_wavelengths_m`]: for each channel of linear sRGB the one wavelength whose light comes closest
 //! to the channel's, over [`fitting`] rays.
 
 use super::rays::{Met, fitting};
@@ -202,44 +202,51 @@ impl Truth {
     }
 }
 
-/// The medium of three wavelengths, each the best for its channel. Three numbers in a file stay as they are.
-pub fn rgb(medium: &SpectralMedium, star: &Spectrum) -> Medium {
-    medium.medium_at(if medium.is_channels() { medium.wavelengths_m } else { best_wavelengths_m(medium, star) })
+/// How an air may be drawn under a star's light above it.
+pub struct Fitting<'a> {
+    medium: &'a SpectralMedium,
+    truth: Truth,
 }
 
-/// For each channel the wavelength whose light comes closest, m.
-pub fn best_wavelengths_m(medium: &SpectralMedium, star: &Spectrum) -> [f64; 3] {
-    Truth::new(medium, star).best_nm().map(|nm| nm * NM)
-}
-
-impl Bands {
-    /// Fits the three bands of a medium under a star's light above the air.
-    pub fn three(medium: &SpectralMedium, star: &Spectrum) -> Self {
-        let truth = Truth::new(medium, star);
-        let [red, green, blue] = truth.best_nm();
-        // An absorber of narrow bands is not left by single steps: the channels' own wavelengths are a second place to set out from.
-        let own = [blue, green, red];
-        let found = truth.search(&THREE_NM);
-        let other = (blue < green && green < red).then(|| truth.search(&own)).filter(|fit| fit.error < found.error);
-        Self::of(medium, &truth, &other.unwrap_or(found), &[[2, 1, 0]])
+impl<'a> Fitting<'a> {
+    /// Finds what its fitting rays bring.
+    pub fn new(medium: &'a SpectralMedium, star: &Spectrum) -> Self {
+        Self { medium, truth: Truth::new(medium, star) }
     }
 
-    /// Fits six.
-    pub fn six(medium: &SpectralMedium, star: &Spectrum) -> Self {
-        let truth = Truth::new(medium, star);
-        Self::of(medium, &truth, &truth.search(&SIX_NM), &[[5, 3, 1], [4, 2, 0]])
+    /// For each channel the wavelength whose light comes closest, m.
+    pub fn best_wavelengths_m(&self) -> [f64; 3] {
+        self.truth.best_nm().map(|nm| nm * NM)
+    }
+
+    /// By three bands.
+    pub fn three(&self) -> Bands {
+        let [red, green, blue] = self.truth.best_nm();
+        // An absorber of narrow bands is not left by single steps: the channels' own wavelengths are a second place to set out from.
+        let own = [blue, green, red];
+        let found = self.truth.search(&THREE_NM);
+        let other = (blue < green && green < red).then(|| self.truth.search(&own)).filter(|fit| fit.error < found.error);
+        self.bands(&other.unwrap_or(found), &[[2, 1, 0]])
+    }
+
+    /// By six.
+    pub fn six(&self) -> Bands {
+        self.bands(&self.truth.search(&SIX_NM), &[[5, 3, 1], [4, 2, 0]])
     }
 
     /// `triples` are the places of each medium's channels among the wavelengths, which rise.
-    fn of(medium: &SpectralMedium, truth: &Truth, fit: &Fit, triples: &[[usize; 3]]) -> Self {
+    fn bands(&self, fit: &Fit, triples: &[[usize; 3]]) -> Bands {
         let band = |triple: &[usize; 3]| {
-            let wavelengths_nm = triple.map(|i| truth.nm[fit.bands[i]]);
+            let wavelengths_nm = triple.map(|i| self.truth.nm[fit.bands[i]]);
             let [r, g, b] = triple.map(|i| fit.weights[i]);
-            Band { wavelengths_nm, medium: medium.medium_at(wavelengths_nm.map(|nm| nm * NM)), to_rgb: DMat3::from_cols(r, g, b) }
+            let medium = self.medium.medium_at(wavelengths_nm.map(|nm| nm * NM));
+            Band { wavelengths_nm, medium, to_rgb: DMat3::from_cols(r, g, b) }
         };
-        Self { list: triples.iter().map(band).collect() }
+        Bands { list: triples.iter().map(band).collect() }
     }
+}
 
+impl Bands {
     /// Linear sRGB, per unit of the star's channel, of what the channels of each band's medium bring.
     pub fn mix(&self, channels: impl Fn(usize, &Band) -> DVec3) -> DVec3 {
         self.list.iter().enumerate().map(|(k, band)| band.to_rgb * channels(k, band)).sum()
@@ -277,12 +284,14 @@ mod tests {
     use crate::air::optics::{Aerosol, Load};
     use crate::air::spectral::tests::{earth, exponential};
     use crate::air::spectral::{Optics, SpectralLayer};
+    use crate::light::spectrum::Starlight;
 
     fn sum_of_rows(bands: &Bands) -> DVec3 {
         bands.mix(|_, _| DVec3::ONE)
     }
     fn both(medium: &SpectralMedium, star: &Spectrum) -> [Bands; 2] {
-        [Bands::three(medium, star), Bands::six(medium, star)]
+        let fitting = Fitting::new(medium, star);
+        [fitting.three(), fitting.six()]
     }
 
     #[test]
@@ -318,7 +327,7 @@ mod tests {
                     assert!(largest.is_finite() && largest < 6.0, "{largest}");
                     assert!((sum_of_rows(&bands) - DVec3::ONE).abs().max_element() < 1e-9);
                 }
-                assert!(best_wavelengths_m(medium, &star).iter().all(|w| (4e-7..=7e-7).contains(w)));
+                assert!(Fitting::new(medium, &star).best_wavelengths_m().iter().all(|w| (4e-7..=7e-7).contains(w)));
             }
         }
     }
@@ -327,7 +336,8 @@ mod tests {
     fn three_numbers_stay_the_channels() {
         let mut medium = earth();
         medium.layers.iter_mut().for_each(|l| l.optics = Optics::Channels([1e-6, 2e-6, 4e-6], [0.0, 1e-7, 3e-7]));
-        let drawn = rgb(&medium, &Spectrum::sun());
+        let (drawn, bands) = medium.draw(false, &Starlight::Sun).unwrap();
+        assert!(bands.is_none());
         assert!((drawn.layers[0].scattering_per_m - glam::Vec3::new(1e-6, 2e-6, 4e-6)).abs().max_element() < 1e-12);
         assert!((drawn.layers[2].absorption_per_m - glam::Vec3::new(0.0, 1e-7, 3e-7)).abs().max_element() < 1e-12);
     }

@@ -3,8 +3,8 @@
 //! A [`SpectralMedium`] knows its coefficients at every wavelength: from molecules and dust ([`super::optics`]), from a table, or, where a
 //! file gives three numbers, by a power law through them. A frame cannot integrate 216 wavelengths; it draws
 //! - `spectrum = "rgb"`: three wavelengths, the best for this air under this star, and a matrix from those to linear sRGB, fitted
-//!   once to the integral over all wavelengths ([`Bands::three`]); or three numbers as a file gives them, for red, green and blue;
-//! - `spectrum = "spectral"`: six wavelengths, in two media of three channels each ([`Bands::six`]).
+//!   once to the integral over all wavelengths ([`Fitting::three`]); or three numbers as a file gives them, for red, green and blue;
+//! - `spectrum = "spectral"`: six wavelengths, in two media of three channels each ([`Fitting::six`]).
 //!
 //! [`rays`] gives the integral itself; [`study`] tells how far each way is from it, in ΔE2000. Not here: light in several scatterings,
 //! which is linear in the bands like the first one; what the GPU makes of the bands.
@@ -14,7 +14,7 @@ mod ozone;
 pub mod rays;
 pub mod study;
 
-pub use bands::{Bands, rgb};
+pub use bands::{Bands, Fitting};
 
 use super::RangeError;
 use super::medium::{Layer, Medium, Phase, Profile};
@@ -88,11 +88,13 @@ impl SpectralMedium {
         let mut sound = self.clone();
         sound.layers.iter_mut().for_each(|l| l.phase = l.phase.normalised());
         let star = star.spectrum();
-        let bands = match spectral {
-            true => Some(Bands::six(&sound, &star)),
-            false => (!sound.is_channels()).then(|| Bands::three(&sound, &star)),
-        };
-        Ok((rgb(&sound, &star), bands.map(Box::new)))
+        if sound.is_channels() && !spectral {
+            return Ok((sound.medium_at(sound.wavelengths_m), None));
+        }
+        let fitting = Fitting::new(&sound, &star);
+        let own = if sound.is_channels() { sound.wavelengths_m } else { fitting.best_wavelengths_m() };
+        let bands = if spectral { fitting.six() } else { fitting.three() };
+        Ok((sound.medium_at(own), Some(Box::new(bands))))
     }
 
     /// Everything out of range that is not [`Medium::validate`]'s.

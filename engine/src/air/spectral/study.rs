@@ -3,7 +3,7 @@
 //! Judged on rays that were not fitted to ([`kinds`]), in single scattering and in transmittance, each at the brightness to which an eye
 //! would be used ([`shown`]). The truth has 216 wavelengths and twice the samples of the fit.
 
-use super::bands::{Bands, best_wavelengths_m, channel_weights};
+use super::bands::{Bands, Fitting, channel_weights};
 use super::rays::{Met, Ray, limb};
 use super::{Coefficients, SpectralMedium};
 use crate::light::spectrum::difference::shown;
@@ -148,14 +148,15 @@ impl InBands {
 
 impl Drawn {
     fn new(medium: &SpectralMedium, star: &Spectrum) -> Self {
+        let fitting = Fitting::new(medium, star);
         Self {
             star: star.colour(),
             weights: channel_weights(star),
             all: medium.at(&(0..COUNT).map(|i| wavelength_nm(i) * NM).collect::<Vec<_>>()),
             plain: medium.at(&SpectralMedium::WAVELENGTHS_M),
-            best: medium.at(&best_wavelengths_m(medium, star)),
-            rgb: InBands::new(medium, Bands::three(medium, star)),
-            spectral: InBands::new(medium, Bands::six(medium, star)),
+            best: medium.at(&fitting.best_wavelengths_m()),
+            rgb: InBands::new(medium, fitting.three()),
+            spectral: InBands::new(medium, fitting.six()),
         }
     }
 

@@ -5,7 +5,7 @@
 
 use crate::gpu::{Gpu, ShaderLibrary};
 use crate::render::RenderError;
-use crate::render::pipeline::{compute_pipeline, loaded_entry, uniform_entry};
+use crate::render::pipeline::{compute_pipeline, loaded_entry, stored_texture_entry, uniform_entry};
 use crate::render::targets::HDR;
 use wgpu::{BindGroupEntry, BindingResource, TextureView, TextureViewDimension};
 
@@ -26,16 +26,7 @@ pub struct Tables {
 impl BandMixer {
     /// Compiles it.
     pub fn new(gpu: &Gpu, shaders: &ShaderLibrary) -> Result<Self, RenderError> {
-        let written = |binding| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility: wgpu::ShaderStages::COMPUTE,
-            ty: wgpu::BindingType::StorageTexture {
-                access: wgpu::StorageTextureAccess::WriteOnly,
-                format: HDR,
-                view_dimension: TextureViewDimension::D2,
-            },
-            count: None,
-        };
+        let written = |binding| stored_texture_entry(binding, HDR, TextureViewDimension::D2);
         let read = |binding| loaded_entry(binding, TextureViewDimension::D2Array);
         let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("air bands"),

@@ -7,7 +7,7 @@ use crate::air::model::orders::{ALTITUDES, DIRECTIONS, MAX_ORDERS, Plan, SUNS, V
 use crate::gpu::texture::Texture;
 use crate::gpu::{Gpu, ShaderLibrary};
 use crate::render::RenderError;
-use crate::render::pipeline::{compute_pipeline, loaded_entry, sampler_entry, texture_entry, uniform_entry};
+use crate::render::pipeline::{compute_pipeline, loaded_entry, sampler_entry, stored_texture_entry, texture_entry, uniform_entry};
 use crate::render::targets::HDR;
 use crate::scene::gpu_data::MAX_AIRS;
 use wgpu::util::DeviceExt as _;
@@ -60,12 +60,7 @@ impl OrdersBaker {
     /// Compiles the passes and makes room for all airs.
     pub fn new(gpu: &Gpu, shaders: &ShaderLibrary) -> Result<Self, RenderError> {
         let storage = |binding, read_only| buffer_entry(binding, wgpu::BufferBindingType::Storage { read_only });
-        let written = |binding, view_dimension| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility: wgpu::ShaderStages::COMPUTE,
-            ty: wgpu::BindingType::StorageTexture { access: wgpu::StorageTextureAccess::WriteOnly, format: HDR, view_dimension },
-            count: None,
-        };
+        let written = |binding, view_dimension| stored_texture_entry(binding, HDR, view_dimension);
         let layout =
             |entries: &[_]| gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("air orders"), entries });
         let each = layout(&[

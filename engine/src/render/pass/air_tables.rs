@@ -18,7 +18,7 @@ use crate::gpu::buffer::Uniform;
 use crate::gpu::texture::{Texture, linear_sampler};
 use crate::gpu::{Gpu, ShaderLibrary};
 use crate::render::RenderError;
-use crate::render::pipeline::{compute_pipeline, loaded_entry, uniform_entry};
+use crate::render::pipeline::{compute_pipeline, loaded_entry, stored_texture_entry, uniform_entry};
 use crate::render::report::TABLES_MADE;
 use crate::render::shared::{AirTables, FrameContext};
 use crate::render::targets::HDR;
@@ -80,16 +80,7 @@ impl AirBaker {
     /// Compiles the three bakes and makes room for [`MAX_AIRS`] airs.
     #[allow(clippy::cast_possible_truncation)]
     pub fn new(gpu: &Gpu, shaders: &ShaderLibrary) -> Result<Self, RenderError> {
-        let storage = wgpu::BindGroupLayoutEntry {
-            binding: 1,
-            visibility: wgpu::ShaderStages::COMPUTE,
-            ty: wgpu::BindingType::StorageTexture {
-                access: wgpu::StorageTextureAccess::WriteOnly,
-                format: HDR,
-                view_dimension: TextureViewDimension::D2Array,
-            },
-            count: None,
-        };
+        let storage = stored_texture_entry(1, HDR, TextureViewDimension::D2Array);
         let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("air transmittance"),
             entries: &[uniform_entry(0), storage, loaded_entry(2, TextureViewDimension::D2Array)],

@@ -11,7 +11,9 @@ use crate::gpu::Gpu;
 use crate::gpu::buffer::Uniform;
 use crate::gpu::texture::{Texture, linear_sampler};
 use crate::render::RenderError;
-use crate::render::pipeline::{compute_pipeline, loaded_entry, sampler_entry, storage_entry, texture_entry, uniform_entry};
+use crate::render::pipeline::{
+    compute_pipeline, loaded_entry, sampler_entry, storage_entry, stored_texture_entry, texture_entry, uniform_entry,
+};
 use crate::render::shared::AirTables;
 use crate::render::targets::HDR;
 use crate::scene::Body;
@@ -87,12 +89,7 @@ pub fn make(parts: &Parts<'_>, tables: &AirTables, sizes: Sizes, sun_rad: f32) -
     let Parts { gpu, shaders, .. } = parts;
     let (flat, array, solid) = (TextureViewDimension::D2, TextureViewDimension::D2Array, TextureViewDimension::D3);
     let kind = PainterKind::new(parts, "pass/baseline_bruneton_sky.wgsl", &[texture_entry(0, solid), texture_entry(1, solid)])?;
-    let written = |binding, view_dimension| wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: wgpu::ShaderStages::COMPUTE,
-        ty: wgpu::BindingType::StorageTexture { access: wgpu::StorageTextureAccess::WriteOnly, format: HDR, view_dimension },
-        count: None,
-    };
+    let written = |binding, view_dimension| stored_texture_entry(binding, HDR, view_dimension);
     let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some("baseline bruneton"),
         entries: &[

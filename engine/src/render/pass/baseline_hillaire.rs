@@ -6,7 +6,7 @@
 use crate::gpu::texture::{Texture, linear_sampler};
 use crate::gpu::{Gpu, ShaderLibrary};
 use crate::render::RenderError;
-use crate::render::pipeline::{compute_pipeline, loaded_entry, sampler_entry, texture_entry, uniform_entry};
+use crate::render::pipeline::{compute_pipeline, loaded_entry, sampler_entry, stored_texture_entry, texture_entry, uniform_entry};
 use crate::render::shared::AirTables;
 use crate::render::targets::HDR;
 use crate::scene::gpu_data::AirUniform;
@@ -26,16 +26,7 @@ impl HillaireBaker {
     /// Compiles it.
     pub fn new(gpu: &Gpu, shaders: &ShaderLibrary) -> Result<Self, RenderError> {
         let array = TextureViewDimension::D2Array;
-        let written = wgpu::BindGroupLayoutEntry {
-            binding: 1,
-            visibility: wgpu::ShaderStages::COMPUTE,
-            ty: wgpu::BindingType::StorageTexture {
-                access: wgpu::StorageTextureAccess::WriteOnly,
-                format: HDR,
-                view_dimension: TextureViewDimension::D2,
-            },
-            count: None,
-        };
+        let written = stored_texture_entry(1, HDR, TextureViewDimension::D2);
         let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("baseline hillaire"),
             entries: &[

@@ -10,7 +10,7 @@ use crate::air::Air;
 use crate::gpu::Gpu;
 use crate::gpu::texture::Texture;
 use crate::render::RenderError;
-use crate::render::pipeline::{PipelineKind, compute_pipeline, texture_entry};
+use crate::render::pipeline::{PipelineKind, compute_pipeline, stored_texture_entry, texture_entry};
 use crate::render::shared::{AirTables, FrameContext};
 use crate::render::targets::HDR;
 use crate::scene::Body;
@@ -51,7 +51,7 @@ pub fn make(parts: &Parts<'_>, tables: &AirTables) -> Result<Box<dyn Painter>, R
     let by_tables = PipelineKind { entry: "by_tables", ..PipelineKind::full_screen("sky", &kind.module, &groups, HDR) }.make(gpu);
     let fill_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some("baseline hillaire: tables of the eye"),
-        entries: &[texture_entry(0, flat), written(3, flat), written(4, solid)],
+        entries: &[texture_entry(0, flat), stored_texture_entry(3, HDR, flat), stored_texture_entry(4, HDR, solid)],
     });
     let groups = [&shared.frame_layout, &shared.light_layout, picture, &fill_layout];
     let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::STORAGE_BINDING;
@@ -73,15 +73,6 @@ pub fn make(parts: &Parts<'_>, tables: &AirTables) -> Result<Box<dyn Painter>, R
         groups: bound,
         marches: false,
     }))
-}
-
-const fn written(binding: u32, view_dimension: TextureViewDimension) -> wgpu::BindGroupLayoutEntry {
-    wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: wgpu::ShaderStages::COMPUTE,
-        ty: wgpu::BindingType::StorageTexture { access: wgpu::StorageTextureAccess::WriteOnly, format: HDR, view_dimension },
-        count: None,
-    }
 }
 
 fn bind(gpu: &Gpu, kind: &PainterKind, fill: &wgpu::BindGroupLayout, tables: [&Texture; 3]) -> [wgpu::BindGroup; 2] {

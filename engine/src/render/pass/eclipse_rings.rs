@@ -10,7 +10,7 @@ use crate::gpu::texture::Texture;
 use crate::gpu::{Gpu, ShaderLibrary};
 use crate::light::shadow::Shadow;
 use crate::render::RenderError;
-use crate::render::pipeline::{compute_pipeline, storage_entry, uniform_entry};
+use crate::render::pipeline::{compute_pipeline, storage_entry, stored_texture_entry, uniform_entry};
 use crate::render::shared::{AirTables, FrameContext, Shared};
 use crate::render::targets::HDR;
 use crate::scene::gpu_data::{Layers, MAX_BODIES, MAX_OCCLUDERS};
@@ -41,16 +41,7 @@ pub struct EclipseRings {
 impl EclipseRings {
     /// Compiles it.
     pub fn new(gpu: &Gpu, shaders: &ShaderLibrary, shared: &Shared) -> Result<Self, RenderError> {
-        let written = wgpu::BindGroupLayoutEntry {
-            binding: 2,
-            visibility: wgpu::ShaderStages::COMPUTE,
-            ty: wgpu::BindingType::StorageTexture {
-                access: wgpu::StorageTextureAccess::WriteOnly,
-                format: HDR,
-                view_dimension: TextureViewDimension::D2Array,
-            },
-            count: None,
-        };
+        let written = stored_texture_entry(2, HDR, TextureViewDimension::D2Array);
         let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("eclipse rings"),
             entries: &[uniform_entry(0), storage_entry(1), written],

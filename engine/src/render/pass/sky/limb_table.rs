@@ -11,7 +11,7 @@ use crate::gpu::buffer::Uniform;
 use crate::gpu::texture::Texture;
 use crate::light::reflected::lambert_sphere;
 use crate::render::RenderError;
-use crate::render::pipeline::{compute_pipeline, texture_entry, uniform_entry};
+use crate::render::pipeline::{compute_pipeline, stored_texture_entry, texture_entry, uniform_entry};
 use crate::render::targets::HDR;
 use crate::scene::gpu_data::{AirUniform, MAX_AIRS, SkySettings, SkyUniform, vec4};
 use crate::scene::{Body, Snapshot};
@@ -30,16 +30,7 @@ const LEAST_SHARE: f32 = 1e-9;
 pub fn make(parts: &Parts<'_>) -> Result<Box<dyn Painter>, RenderError> {
     let Parts { gpu, shaders, .. } = parts;
     let kind = PainterKind::new(parts, "pass/sky_limb_table.wgsl", &[texture_entry(0, TextureViewDimension::D2)])?;
-    let storage = wgpu::BindGroupLayoutEntry {
-        binding: 2,
-        visibility: wgpu::ShaderStages::COMPUTE,
-        ty: wgpu::BindingType::StorageTexture {
-            access: wgpu::StorageTextureAccess::WriteOnly,
-            format: HDR,
-            view_dimension: TextureViewDimension::D2,
-        },
-        count: None,
-    };
+    let storage = stored_texture_entry(2, HDR, TextureViewDimension::D2);
     let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some("limb_bake"),
         entries: &[uniform_entry(0), uniform_entry(1), storage],

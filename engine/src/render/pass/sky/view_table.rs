@@ -12,27 +12,20 @@ use crate::gpu::Gpu;
 use crate::gpu::buffer::Uniform;
 use crate::gpu::texture::{Texture, linear_sampler};
 use crate::render::RenderError;
-use crate::render::pipeline::{compute_pipeline, loaded_entry, sampler_entry, storage_entry, texture_entry, uniform_entry};
+use crate::render::pipeline::{
+    compute_pipeline, loaded_entry, sampler_entry, storage_entry, stored_texture_entry, texture_entry, uniform_entry,
+};
 use crate::render::shared::Mirror;
 use crate::render::targets::HDR;
 use crate::scene::Body;
 use crate::scene::gpu_data::{AirUniform, MEDIA_COLUMNS, MEDIA_ROWS, SkySettings, ViewTableUniform, media_rows};
 use std::collections::BTreeMap;
-use wgpu::{BindGroupEntry, BindGroupLayoutEntry, BindingResource, ShaderStages, TextureFormat, TextureUsages, TextureViewDimension};
+use wgpu::{BindGroupEntry, BindGroupLayoutEntry, BindingResource, TextureFormat, TextureUsages, TextureViewDimension};
 
 /// Bodies whose tables are kept while others are drawn: a full table has 128 MiB.
 const KEPT: usize = 4;
 /// Texels of the transmittance table that [`Painter::light_ground`] writes; irradiance has fewer.
 const SUNLIGHT_SIZE: [u32; 2] = [256, 64];
-
-const fn storage(binding: u32, format: TextureFormat, view_dimension: TextureViewDimension) -> BindGroupLayoutEntry {
-    BindGroupLayoutEntry {
-        binding,
-        visibility: ShaderStages::COMPUTE,
-        ty: wgpu::BindingType::StorageTexture { access: wgpu::StorageTextureAccess::WriteOnly, format, view_dimension },
-        count: None,
-    }
-}
 
 /// A bake: its pipeline and the layout of its one group.
 struct Bake {
@@ -69,11 +62,16 @@ pub fn make(parts: &Parts<'_>) -> Result<Box<dyn Painter>, RenderError> {
     let own = [storage_entry(0), texture_entry(1, solid), loaded_entry(2, flat)];
     let kind = PainterKind::new(parts, "pass/sky_view_table.wgsl", &own)?;
     let filtering = wgpu::SamplerBindingType::Filtering;
-    let depth = [storage(2, TextureFormat::Rgba32Float, flat), loaded_entry(4, array)];
-    let scatter = [storage(2, HDR, solid), loaded_entry(3, flat), loaded_entry(4, array)];
-    let ambient = [storage(2, HDR, flat), texture_entry(3, solid), loaded_entry(4, array), sampler_entry(5, filtering)];
-    let daylight =
-        [storage(2, HDR, flat), storage(3, HDR, flat), loaded_entry(4, flat), texture_entry(5, flat), sampler_entry(6, filtering)];
+    let depth = [stored_texture_entry(2, TextureFormat::Rgba32Float, flat), loaded_entry(4, array)];
+    let scatter = [stored_texture_entry(2, HDR, solid), loaded_entry(3, flat), loaded_entry(4, array)];
+    let ambient = [stored_texture_entry(2, HDR, flat), texture_entry(3, solid), loaded_entry(4, array), sampler_entry(5, filtering)];
+    let daylight = [
+        stored_texture_entry(2, HDR, flat),
+        stored_texture_entry(3, HDR, flat),
+        loaded_entry(4, flat),
+        texture_entry(5, flat),
+        sampler_entry(6, filtering),
+    ];
     let small = Settings {
         height_size: 1,
         view_size: 1,
