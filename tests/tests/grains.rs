@@ -46,7 +46,7 @@ fn errors(sun_deg: f64, views: &[(f64, f64)]) -> Vec<([f64; 3], [f64; 2])> {
 
 #[test]
 fn the_glow_about_the_sun_and_the_sky_beyond_are_the_reference_s() {
-    for (sun_deg, rms, worst) in [(8.0, 0.05, 0.1), (30.0, 0.02, 0.07)] {
+    for (sun_deg, rms, worst) in [(8.0, 0.05, 0.1), (30.0, 0.02, 0.06)] {
         let around = [1.0, 2.0, 4.0, 7.0, 12.0, 30.0].map(|up| (sun_deg + up, 0.0));
         let beyond = [60.0, 120.0, 180.0].map(|aside| (12.0, aside));
         let found = errors(sun_deg, &[&around[..], &beyond[..]].concat());

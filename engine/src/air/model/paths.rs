@@ -17,7 +17,7 @@ const CELLS: usize = 48;
 /// Jumps at which it is cut.
 const JUMPS: usize = 8;
 /// What the light that arrives has to say in how long steps are; the way has the rest.
-const BY_LIGHT: f64 = 0.5;
+const BY_LIGHT: f64 = 0.2;
 
 /// Where a step begins: squares of even parts on both sides of the lowest point, where air is densest.
 pub(super) fn step_at(low: f64, end: f64, part: f64) -> f64 {
