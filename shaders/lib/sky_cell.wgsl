@@ -7,24 +7,14 @@
 #include "lib/sky_pixel.wgsl"
 
 // By how much of its light a pixel may err because the surface around it is not its own.
-const SKY_AGREE_DEPTH: f32 = 0.01;
-// Half floats then hold depths of surfaces from 1 m to 800,000 km to a two-thousandth, for a near plane of 0.2 m; differences of them to this.
-const SKY_DEPTH_SCALE: f32 = 262144.0;
-const SKY_DEPTH_MOST: f32 = 6e4;
-const SKY_DEPTH_NOISE: f32 = 1.2e-3;
-// Pre-exposed light of which nobody sees an error: a thousandth of white.
-const SKY_UNSEEN: f32 = 1e-3;
+const SKY_AGREE_DEPTH: f32 = 0.03;
+// Relative error of an interpolated depth that is nothing but rounding.
+const SKY_DEPTH_ROUNDING: f32 = 2e-6;
 
-// The surface of a pixel, as levels hold it: its depth from where the air begins, times SKY_DEPTH_SCALE; the way to it from there.
-fn sky_surface(body: Body, air: Air, view: SkyView, own_depth: f32) -> vec2<f32> {
-    let path = air_path(air, body.up.xyz, body.up.w, view.ray);
-    let way = max(view.surface - max(path.start, 0.0), 1e-3 * view.surface);
-    return vec2<f32>(min(own_depth * SKY_DEPTH_SCALE * (view.surface / way), SKY_DEPTH_MOST), way);
-}
-
-// A surface moved by ds changes the light before it by T β ds of 1 − T, at most. Of that share of the way to it that half floats do not hold nobody knows.
-fn sky_near_enough(extinction: vec3<f32>, way: f32, apart: f32, through: vec3<f32>) -> bool {
-    return all(through * extinction * (way * max(apart - SKY_DEPTH_NOISE, 0.0)) <= SKY_AGREE_DEPTH * (1.0 - through));
+// How far a surface may lie from where it is thought to be, m: moved by ds it changes the light before it by T β ds of 1 − T, at most. `through`: T there.
+fn sky_reach(extinction: vec3<f32>, through: vec3<f32>) -> f32 {
+    let reach = SKY_AGREE_DEPTH * (1.0 - through) / max(through * extinction, vec3<f32>(1e-30));
+    return max(min(min(reach.r, reach.g), reach.b), 0.0);
 }
 
 // Of a corner between texels of a target of this size. Nothing is cut off at its edge, which would be slow.
@@ -32,7 +22,16 @@ fn sky_texel_position(texel: vec2<u32>, size: vec2<f32>) -> vec4<f32> {
     return full_screen_position(min(vec2<f32>(texel) / size, vec2<f32>(1.0)));
 }
 
-// A ray: radiance and depth of its surface; transmittance and 1 where the texel can be used.
+// Depth of the datum where a pixel sees it, `through` (view_ray) its middle: with v·v = A, v·c = B and C = c² − R² = h (2R + h) for the centre c,
+// 1/z = (B + √(B² − A C)) / C. Where no datum is, that of the horizon's nearest point, or 0.
+fn sky_datum_depth(frame: Frame, body: Body, through: vec3<f32>) -> f32 {
+    let near = -(body.centre.w + body.up.w) * dot(body.up.xyz, through);
+    let apart = body.up.w * (2.0 * body.centre.w + body.up.w);
+    let rest = near * near - dot(through, through) * apart;
+    return select(0.0, min(frame.right.w * (near + sqrt(max(rest, 0.0))) / max(apart, 1e-3), 1.0), near > 0.0 && apart > 0.0);
+}
+
+// A ray: radiance, and the stored depth of its surface less the datum's; transmittance, and 1 where the texel can be used for sky, 2 for a surface.
 struct SkyTexel {
     radiance: vec4<f32>,
     transmittance: vec4<f32>,
@@ -53,21 +52,35 @@ struct SkyDoubt {
 // With x and y from 0 to 1: value = 0 + x·x₁ + y·y₁ + xy·xy₁ − x (1 − x) bend − y (1 − y) bend. Bends of radiance lead over from one side to the
 // opposite one; those of transmittance are the mean of the two.
 struct SkyCell {
+    r0: vec4<f32>,
+    rx: vec4<f32>,
+    ry: vec4<f32>,
+    rxy: vec4<f32>,
+    bend_x: vec4<f32>,
+    bend_xy: vec4<f32>,  // rise of that with y
+    bend_y: vec4<f32>,
+    bend_yx: vec4<f32>,
+    t0: vec3<f32>,
+    tx: vec3<f32>,
+    ty: vec3<f32>,
+    txy: vec3<f32>,
+    t_bend_x: vec3<f32>,
+    t_bend_y: vec3<f32>,
+    reach: f32,          // how far a pixel's depth may lie from the cell's, over the square of it; negative: no surface
+}
+
+// Of a cell what is linear in x and y, so that it can be interpolated: value = base + y·rise − x (1 − x) bend_x − y (1 − y) bend_y. Nothing is flat:
+// then a processor that stands in for a GPU fills rectangles and not triangles.
+struct SkyPlane {
     @builtin(position) position: vec4<f32>,
-    @location(0) @interpolate(flat) r0: vec4<f32>,
-    @location(1) @interpolate(flat) rx: vec4<f32>,
-    @location(2) @interpolate(flat) ry: vec4<f32>,
-    @location(3) @interpolate(flat) rxy: vec4<f32>,
-    @location(4) @interpolate(flat) bend_x: vec4<f32>,
-    @location(5) @interpolate(flat) bend_xy: vec4<f32>,  // rise of that with y
-    @location(6) @interpolate(flat) bend_y: vec4<f32>,
-    @location(7) @interpolate(flat) bend_yx: vec4<f32>,
-    @location(8) @interpolate(flat) t0: vec4<f32>,
-    @location(9) @interpolate(flat) tx: vec4<f32>,
-    @location(10) @interpolate(flat) ty: vec4<f32>,
-    @location(11) @interpolate(flat) txy: vec4<f32>,
-    @location(12) @interpolate(flat) t_bend_x: vec4<f32>,
-    @location(13) @interpolate(flat) t_bend_y: vec4<f32>,
+    @location(0) @interpolate(linear) base: vec4<f32>,
+    @location(1) @interpolate(linear) rise: vec4<f32>,
+    @location(2) @interpolate(linear) bend_x: vec4<f32>,
+    @location(3) @interpolate(linear) bend_y: vec4<f32>,
+    @location(4) @interpolate(linear) t_base: vec4<f32>,    // a: the cell's reach
+    @location(5) @interpolate(linear) t_rise: vec4<f32>,    // a: x
+    @location(6) @interpolate(linear) t_bend_x: vec4<f32>,  // a: y
+    @location(7) @interpolate(linear) t_bend_y: vec4<f32>,
 }
 
 // Of the side from b to c, with a before and d behind.
@@ -111,9 +124,10 @@ fn sky_doubts(a: SkyDoubt, b: SkyDoubt) -> SkyDoubt {
     return SkyDoubt(a.radiance + b.radiance, a.transmittance + b.transmittance);
 }
 
-// Corners a, b in the upper row, c, d in the lower; sides a–b, c–d, a–c, b–d.
+// Corners a, b in the upper row, c, d in the lower; sides a–b, c–d, a–c, b–d. A surface at depth z is c/z away, for the `scale` c at the cell.
 fn sky_cell(
     a: SkyTexel, b: SkyTexel, c: SkyTexel, d: SkyTexel, upper: SkySide, lower: SkySide, left: SkySide, right: SkySide,
+    extinction: vec3<f32>, scale: f32,
 ) -> SkyCell {
     var cell: SkyCell;
     cell.r0 = a.radiance;
@@ -124,23 +138,36 @@ fn sky_cell(
     cell.bend_xy = lower.radiance - upper.radiance;
     cell.bend_y = left.radiance;
     cell.bend_yx = right.radiance - left.radiance;
-    let bend_x = 0.5 * (upper.transmittance + lower.transmittance);
-    let bend_y = 0.5 * (left.transmittance + right.transmittance);
-    cell.t0 = a.transmittance;
-    cell.tx = b.transmittance - a.transmittance;
-    cell.ty = c.transmittance - a.transmittance;
-    cell.txy = a.transmittance - b.transmittance - c.transmittance + d.transmittance;
-    cell.t_bend_x = vec4<f32>(bend_x, 0.0);
-    cell.t_bend_y = vec4<f32>(bend_y, 0.0);
+    cell.t0 = a.transmittance.rgb;
+    cell.tx = (b.transmittance - a.transmittance).rgb;
+    cell.ty = (c.transmittance - a.transmittance).rgb;
+    cell.txy = (a.transmittance - b.transmittance - c.transmittance + d.transmittance).rgb;
+    cell.t_bend_x = 0.5 * (upper.transmittance + lower.transmittance);
+    cell.t_bend_y = 0.5 * (left.transmittance + right.transmittance);
+    let clearest = max(max(a.transmittance, b.transmittance), max(c.transmittance, d.transmittance)).rgb;
+    cell.reach = select(-1.0, sky_reach(extinction, clearest) / scale, a.transmittance.a > 1.5);
     return cell;
 }
 
-fn sky_cell_radiance(cell: SkyCell, at: vec2<f32>) -> vec4<f32> {
-    let arc = at * (1.0 - at);
-    return cell.r0 + at.x * cell.rx + at.y * (cell.ry + at.x * cell.rxy)
-        - arc.x * (cell.bend_x + at.y * cell.bend_xy) - arc.y * (cell.bend_y + at.x * cell.bend_yx);
+fn sky_plane(cell: SkyCell, at: vec2<f32>) -> SkyPlane {
+    return SkyPlane(
+        vec4<f32>(0.0, 0.0, 0.0, 1.0),
+        cell.r0 + at.x * cell.rx, cell.ry + at.x * cell.rxy, cell.bend_x + at.y * cell.bend_xy, cell.bend_y + at.x * cell.bend_yx,
+        vec4<f32>(cell.t0 + at.x * cell.tx, cell.reach), vec4<f32>(cell.ty + at.x * cell.txy, at.x),
+        vec4<f32>(cell.t_bend_x, at.y), vec4<f32>(cell.t_bend_y, 0.0));
 }
-fn sky_cell_transmittance(cell: SkyCell, at: vec2<f32>) -> vec3<f32> {
-    let arc = at * (1.0 - at);
-    return (cell.t0 + at.x * cell.tx + at.y * (cell.ty + at.x * cell.txy) - arc.x * cell.t_bend_x - arc.y * cell.t_bend_y).rgb;
+
+// Light, and in a the depth of the surface less the datum's.
+fn sky_plane_radiance(plane: SkyPlane) -> vec4<f32> {
+    let at = vec2<f32>(plane.t_rise.a, plane.t_bend_x.a);
+    return plane.base + at.y * plane.rise - (at.x - at.x * at.x) * plane.bend_x - (at.y - at.y * at.y) * plane.bend_y;
+}
+fn sky_plane_transmittance(plane: SkyPlane) -> vec3<f32> {
+    let at = vec2<f32>(plane.t_rise.a, plane.t_bend_x.a);
+    return (plane.t_base + at.y * plane.t_rise - (at.x - at.x * at.x) * plane.t_bend_x - (at.y - at.y * at.y) * plane.t_bend_y).rgb;
+}
+// Whether a pixel of this depth sees the surface that a cell has there, or none as the cell. `thought`: the cell's depth.
+fn sky_plane_fits(plane: SkyPlane, thought: f32, depth: f32) -> bool {
+    let alike = abs(thought - depth) <= depth * (plane.t_base.a * depth + SKY_DEPTH_ROUNDING);
+    return (depth > 0.0) == (plane.t_base.a >= 0.0) && (alike || depth <= 0.0);
 }

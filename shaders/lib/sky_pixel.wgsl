@@ -47,33 +47,68 @@ fn sky_view(frame: Frame, uv: vec2<f32>, stored: f32) -> SkyView {
     return SkyView(through / stretch, select(1e30, axis_distance(frame, stored) * stretch, drawn), !drawn, frame.up.w);
 }
 
-// From afar the air at a limb is thinner than a pixel: there, several rays across it stand for one. So they do along the horizon of a
-// smooth body, whose own picture fades over one pixel there. Elsewhere: 1. From within the air, ground that was drawn ends the ray where it stands.
-fn sky_rays(body: Body, air: Air, view: SkyView) -> u32 {
+// How many rays stand for a pixel, and where: they cross it from the planet's centre outwards. −½ and ½: the pixel's edges.
+struct SkySpread {
+    nodes: u32,        // of a Gauss–Legendre rule on each part; 1 where there is but one ray: the view itself
+    below: vec2<f32>,  // part before the ground, from and to
+    above: vec2<f32>,  // part above it, up to the top of the air
+}
+
+const SKY_ALONE: SkySpread = SkySpread(1u, vec2<f32>(-0.5), vec2<f32>(-0.5, 0.5));
+// Parts of the air's height from which on a pixel wants two rays, and three.
+const SKY_TWO: f32 = 0.05;
+const SKY_THREE: f32 = 0.4;
+
+// From afar the air at a limb is thinner than a pixel: there, several rays stand for one. So they do along the horizon of a smooth body, whose
+// own picture fades over one pixel there. Elsewhere one does. From within the air, ground that was drawn ends the ray where it stands.
+fn sky_spread(body: Body, air: Air, view: SkyView) -> SkySpread {
     let path = air_path(air, body.up.xyz, body.up.w, view.ray);
     if path.start < 0.0 || view.surface <= path.start {
-        return 1u;
+        return SKY_ALONE;
     }
     let low = air_altitude(air, path, clamp(-path.slope, 0.0, path.exit));
     let horizon = path.start - path.slope;
-    if body.ids.w == 0 && view.surface > 0.8 * horizon && abs(low) < view.pixel * horizon {
-        return 5u;
-    }
     let pixel = view.pixel * max(horizon, 0.0);
-    let thin = (path.start > 0.0 || view.datum) && pixel > 0.05 * air.shape.y;
-    return select(1u, 5u, thin && low < air.shape.y + pixel && low > -pixel);
+    let fades = body.ids.w == 0 && view.surface > 0.8 * horizon && abs(low) < pixel;
+    let thin = (path.start > 0.0 || view.datum) && pixel > SKY_TWO * air.shape.y && low < air.shape.y + pixel && low > -pixel;
+    if !fades && !thin {
+        return SKY_ALONE;
+    }
+    let edges = clamp((vec2<f32>(0.0, air.shape.y) - low) / pixel, vec2<f32>(-0.5), vec2<f32>(0.5));
+    return SkySpread(
+        1u + u32(pixel > SKY_TWO * air.shape.y) + u32(pixel > SKY_THREE * air.shape.y), vec2<f32>(-0.5, edges.x), vec2<f32>(edges.x, edges.y));
 }
 
-// The k-th of `rays` rays across the pixel; a single one is the view itself.
-fn sky_across(body: Body, view: SkyView, k: u32, rays: u32) -> SkyView {
-    if rays <= 1u {
-        return view;
+// Whether the view itself stands for the pixel.
+fn sky_alone(spread: SkySpread) -> bool {
+    return spread.nodes == 1u && spread.above.x <= -0.5 && spread.above.y >= 0.5;
+}
+
+fn sky_rays(spread: SkySpread) -> u32 {
+    let parts = u32(spread.below.y > spread.below.x) + u32(spread.above.y > spread.above.x);
+    return max(parts * spread.nodes, 1u);
+}
+
+struct SkyShare {
+    view: SkyView,
+    weight: f32,
+}
+// The k-th of the rays, and its share of the pixel. What they leave sees no air.
+fn sky_across(body: Body, view: SkyView, spread: SkySpread, k: u32) -> SkyShare {
+    if sky_alone(spread) {
+        return SkyShare(view, 1.0);
     }
-    let aside = ((f32(k) + 0.5) / f32(rays) - 0.5) * view.pixel;
+    let part = select(spread.above, spread.below, k < spread.nodes && spread.below.y > spread.below.x);
+    let node = f32(k % spread.nodes) - 0.5 * f32(spread.nodes - 1u);
+    // Gauss–Legendre: at 0; ±1/√3; 0 and ±√(3/5) with 4/9 and 5/18.
+    let two = spread.nodes == 2u;
+    let at = node * select(0.774596669, 1.154700538, two);
+    let share = select(select(5.0 / 18.0, 4.0 / 9.0, node == 0.0), 1.0 / f32(spread.nodes), spread.nodes < 3u);
+    let aside = (mix(part.x, part.y, 0.5 + 0.5 * at)) * view.pixel;
     let outwards = body.up.xyz - view.ray * dot(view.ray, body.up.xyz);
     let ray = normalize(view.ray + outwards * (aside / max(length(outwards), 1e-20)));
     // What was drawn in the pixel's middle is not what its other parts show: the datum decides, as long as the air lies before it.
-    return SkyView(ray, view.surface, true, view.pixel);
+    return SkyShare(SkyView(ray, view.surface, true, view.pixel), share * (part.y - part.x));
 }
 
 // The path of a ray of sight. Between the datum's horizon and that of ground which lies deeper, a picture from within the air has drawn nothing:
@@ -126,8 +161,7 @@ fn in_starlight(body: Body, light: AirLight) -> AirLight {
     return AirLight(light.radiance * body.illuminance.rgb, light.transmittance);
 }
 
-// Luminance and transmittance laid over a stored colour; `sum` is over `rays` rays.
-fn sky_over(behind: vec3<f32>, sum: AirLight, rays: u32, exposure: Exposure) -> vec4<f32> {
-    let share = 1.0 / f32(rays);
-    return vec4<f32>(to_hdr(behind * sum.transmittance * share + sum.radiance * (exposure.pre * share), 1.0), 1.0);
+// Luminance and transmittance laid over a stored colour.
+fn sky_over(behind: vec3<f32>, light: AirLight, exposure: Exposure) -> vec4<f32> {
+    return vec4<f32>(to_hdr(behind * light.transmittance + light.radiance * exposure.pre, 1.0), 1.0);
 }

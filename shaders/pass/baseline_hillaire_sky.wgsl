@@ -90,5 +90,5 @@ fn by_tables(in: Varying) -> @location(0) vec4<f32> {
         let weight = min(2.0 * w * f32(HILLAIRE_FROXELS), 1.0);
         return vec4<f32>(to_hdr(behind * mix(1.0, cell.a, weight) + cell.rgb * weight, 1.0), 1.0);
     }
-    return sky_over(behind, sky_light(body, frame.star, view), 1u, exposure);
+    return sky_over(behind, sky_light(body, frame.star, view), exposure);
 }

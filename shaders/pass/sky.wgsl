@@ -37,20 +37,25 @@ fn vertex(@builtin(vertex_index) index: u32) -> Varying {
     return Varying(full_screen_position(uv), uv);
 }
 
-// Sum over the rays that stand for a pixel.
-fn sky_sum(body: Body, view: SkyView, rays: u32) -> AirLight {
+// Mean over a pixel.
+fn sky_mean(body: Body, view: SkyView, spread: SkySpread) -> AirLight {
+    let rays = sky_rays(spread);
     var sum = AirLight(vec3<f32>(0.0), vec3<f32>(0.0));
+    var clear = 1.0;
     // Asked at its end: a processor that stands in for a GPU goes once more through a loop that asks before, with nothing to do.
     var k = 0u;
     loop {
-        let light = sky_light(body, frame.star, sky_across(body, view, k, rays));
-        sum.radiance += light.radiance;
-        sum.transmittance += light.transmittance;
+        let share = sky_across(body, view, spread, k);
+        let light = sky_light(body, frame.star, share.view);
+        sum.radiance += share.weight * light.radiance;
+        sum.transmittance += share.weight * light.transmittance;
+        clear -= share.weight;
         k++;
         if k >= rays {
             break;
         }
     }
+    sum.transmittance += max(clear, 0.0);
     return sum;
 }
 
@@ -59,8 +64,8 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
     let pixel = vec2<u32>(in.position.xy);
     let body = bodies.list[sky.ids.x];
     let view = sky_view(frame, in.uv, textureLoad(depth, pixel, 0));
-    let rays = sky_rays(body, airs.list[u32(body.ids.z)], view);
-    return sky_over(textureLoad(opaque, pixel, 0).rgb, sky_sum(body, view, rays), rays, exposure);
+    let light = sky_mean(body, view, sky_spread(body, airs.list[u32(body.ids.z)], view));
+    return sky_over(textureLoad(opaque, pixel, 0).rgb, light, exposure);
 }
 
 struct Front {

@@ -24,8 +24,8 @@ override INTO: u32 = 1u;
 override MARGIN: u32 = 0u;
 
 struct Level {
-    @location(0) radiance: vec4<f32>,       // pre-exposed; a: depth of the surface seen, from where the air begins, times SKY_DEPTH_SCALE
-    @location(1) transmittance: vec4<f32>,  // a: 1 where one ray stands for the pixel, else 0; 0 where no ray was asked for
+    @location(0) radiance: vec4<f32>,       // pre-exposed; a: depth of the surface seen, less the datum's
+    @location(1) transmittance: vec4<f32>,  // a: where one ray stands for the pixel 1, or 2 if it meets a surface; else, and where no ray was asked for, 0
 }
 
 // By the air's own medium, or by its two band media; in the star's light and the second one.
@@ -59,11 +59,6 @@ fn sky_light(body: Body, star: vec4<f32>, view: SkyView) -> AirLight {
     return AirLight(luminance, clamp(through, vec3<f32>(0.0), vec3<f32>(1.0)));
 }
 
-fn surface_of(view: SkyView, own_depth: f32) -> vec2<f32> {
-    let body = bodies.list[sky.ids.x];
-    return sky_surface(body, airs.list[u32(body.ids.z)], view, own_depth);
-}
-
 const X: vec2<i32> = vec2<i32>(1, 0);
 const Y: vec2<i32> = vec2<i32>(0, 1);
 
@@ -73,38 +68,48 @@ fn level_bounds(rate: u32) -> vec4<i32> {
     return vec4<i32>(vec4<u32>(pixels.xy / rate, (pixels.zw - 1u) / rate + 1u));
 }
 
-// Depth at a pixel. Beyond the picture surfaces go on as planes do.
-fn depth_at(pixel: vec2<u32>) -> f32 {
-    let here = min(pixel, textureDimensions(depth) - 1u);
-    let own = textureLoad(depth, here, 0);
-    let back = textureLoad(depth, here - min(pixel - here, here), 0);
-    let on = 2.0 * own - back;
-    return select(own, on, back > 0.0 && on > 0.0);
+fn uv_of(pixel: vec2<u32>) -> vec2<f32> {
+    return (vec2<f32>(pixel) + 0.5) * frame.size.zw;
 }
-fn pixel_view(pixel: vec2<u32>, own: f32) -> SkyView {
-    return sky_view(frame, (vec2<f32>(pixel) + 0.5) * frame.size.zw, own);
+// Distance times depth of what stands at a pixel, m.
+fn depth_scale(pixel: vec2<u32>) -> f32 {
+    return axis_distance(frame, 1.0) * length(view_ray(frame, uv_of(pixel)));
+}
+
+fn datum_depth(pixel: vec2<u32>) -> f32 {
+    return sky_datum_depth(frame, bodies.list[sky.ids.x], view_ray(frame, uv_of(pixel)));
+}
+// Depth of the surface at a pixel less the datum's there, and that itself: 0 where none is. Beyond the picture surfaces go on evenly.
+fn relief_at(pixel: vec2<u32>) -> vec2<f32> {
+    let here = min(pixel, textureDimensions(depth) - 1u);
+    let back = here - min(pixel - here, here);
+    let own = vec2<f32>(textureLoad(depth, here, 0), textureLoad(depth, back, 0));
+    let relief = own - vec2<f32>(datum_depth(here), datum_depth(back));
+    let datum = datum_depth(pixel);
+    let on = select(relief.x, 2.0 * relief.x - relief.y, own.y > 0.0);
+    return vec2<f32>(on, select(0.0, max(datum + on, 1e-30), own.x > 0.0));
 }
 
 @fragment
 fn march_level(in: Varying) -> Level {
     let pixel = RATE * vec2<u32>(in.position.xy);
     let body = bodies.list[sky.ids.x];
-    let own = depth_at(pixel);
-    let view = pixel_view(pixel, own);
+    let surface = relief_at(pixel);
+    let view = sky_view(frame, uv_of(pixel), surface.y);
     // Where several rays would stand for a pixel, nobody asks for its light.
-    let one = sky_rays(body, airs.list[u32(body.ids.z)], view) <= 1u;
+    let one = sky_alone(sky_spread(body, airs.list[u32(body.ids.z)], view));
     let light = sky_light(body, frame.star, view);
     return Level(
-        vec4<f32>(to_hdr(light.radiance, exposure.pre), sky_surface(body, airs.list[u32(body.ids.z)], view, own).x),
-        vec4<f32>(light.transmittance, select(0.0, 1.0, one)));
+        vec4<f32>(to_hdr(light.radiance, exposure.pre), surface.x),
+        vec4<f32>(light.transmittance, select(0.0, select(1.0, 2.0, surface.y > 0.0), one)));
 }
 
 // A texel of this level, `like` one of them: with 1 for the transmittance's a where it can stand in one row with that.
 fn texel_like(at: vec2<i32>, like: SkyTexel) -> SkyTexel {
     let bounds = level_bounds(RATE);
     var texel = texel_at(at);
-    let fits = all(at >= bounds.xy) && all(at <= bounds.zw) && (texel.radiance.a > 0.0) == (like.radiance.a > 0.0);
-    texel.transmittance.a *= select(0.0, 1.0, fits);
+    let fits = all(at >= bounds.xy) && all(at <= bounds.zw) && texel.transmittance.a == like.transmittance.a;
+    texel.transmittance.a = select(0.0, 1.0, fits);
     return texel;
 }
 fn texel_at(at: vec2<i32>) -> SkyTexel {
@@ -125,7 +130,7 @@ fn behind_at(pixel: vec2<u32>) -> vec3<f32> {
 }
 
 fn bearable(behind: vec3<f32>, radiance: vec3<f32>, transmittance: vec3<f32>) -> vec3<f32> {
-    return sky.settings[0].a * (behind * transmittance + radiance + SKY_UNSEEN);
+    return sky.settings[0].a * (behind * transmittance + radiance + sky.settings[2].x);
 }
 
 // 1 where a cell is even, else 0: it is open.
@@ -136,8 +141,8 @@ fn plan_level(in: Varying) -> @location(0) vec4<f32> {
     let b = texel_at(at + X);
     let c = texel_at(at + Y);
     let d = texel_at(at + X + Y);
-    let grounds = vec4<bool>(a.radiance.a > 0.0, b.radiance.a > 0.0, c.radiance.a > 0.0, d.radiance.a > 0.0);
-    let one = min(min(a.transmittance.a, b.transmittance.a), min(c.transmittance.a, d.transmittance.a)) > 0.999;
+    let kinds = vec4<f32>(a.transmittance.a, b.transmittance.a, c.transmittance.a, d.transmittance.a);
+    let alike = a.transmittance.a > 0.5 && all(kinds == kinds.xxxx);
     let doubt = sky_doubts(
         sky_doubts_more(doubt_from(at, X, a, b), doubt_from(at + Y, X, c, d)),
         sky_doubts_more(doubt_from(at, Y, a, c), doubt_from(at + X, Y, b, d)));
@@ -151,10 +156,9 @@ fn plan_level(in: Varying) -> @location(0) vec4<f32> {
     let lit = all(doubt.transmittance <= 4.0 * sky.settings[0].a * (through + 0.05))
         && all(doubt.radiance.rgb <= bearable(vec3<f32>(0.0), radiance.rgb, through))
         && all(doubt.radiance.rgb + behind * doubt.transmittance <= bearable(behind, radiance.rgb, through));
-    let own = depth_at(pixel);
-    let surface = surface_of(pixel_view(pixel, own), own);
-    let deep = radiance.a < SKY_DEPTH_MOST && sky_near_enough(sky.settings[0].rgb, surface.y, doubt.radiance.a / max(radiance.a, 1e-6), through);
-    return vec4<f32>(select(0.0, 1.0, one && lit && select(!any(grounds), deep, all(grounds))));
+    let own = radiance.a + datum_depth(pixel + RATE / 2u);
+    let deep = 0.2 * doubt.radiance.a * depth_scale(pixel) <= own * own * sky_reach(sky.settings[0].rgb, through);
+    return vec4<f32>(select(0.0, 1.0, alike && lit && (deep || kinds.x < 1.5)));
 }
 
 fn cell_of(cell: vec2<u32>) -> SkyCell {
@@ -163,7 +167,8 @@ fn cell_of(cell: vec2<u32>) -> SkyCell {
     let b = texel_at(at + X);
     let c = texel_at(at + Y);
     let d = texel_at(at + X + Y);
-    return sky_cell(a, b, c, d, side_from(at, X, a, b), side_from(at + Y, X, c, d), side_from(at, Y, a, c), side_from(at + X, Y, b, d));
+    return sky_cell(a, b, c, d, side_from(at, X, a, b), side_from(at + Y, X, c, d), side_from(at, Y, a, c), side_from(at + X, Y, b, d),
+        sky.settings[0].rgb, depth_scale(RATE * cell));
 }
 
 struct Taken {
@@ -171,16 +176,12 @@ struct Taken {
     fits: bool,
 }
 // A pixel's colour by its cell, and whether it is such as those at the cell's corners.
-fn taken(cell: SkyCell, pixel: vec2<u32>) -> Taken {
-    let place = vec2<f32>(pixel % RATE) / f32(RATE);
-    let radiance = sky_cell_radiance(cell, place);
-    let through = clamp(sky_cell_transmittance(cell, place), vec3<f32>(0.0), vec3<f32>(1.0));
+fn taken(plane: SkyPlane, pixel: vec2<u32>) -> Taken {
+    let radiance = sky_plane_radiance(plane);
+    let through = clamp(sky_plane_transmittance(plane), vec3<f32>(0.0), vec3<f32>(1.0));
     let behind = textureLoad(opaque, pixel, 0).rgb;
     let own = textureLoad(depth, pixel, 0);
-    let surface = surface_of(pixel_view(pixel, own), own);
-    let alike = sky_near_enough(sky.settings[0].rgb, surface.y, abs(surface.x / max(radiance.a, 1e-6) - 1.0), through);
-    let grounds = cell.r0.a > 0.0;
-    return Taken(vec4<f32>(to_hdr(behind * through + radiance.rgb, 1.0), 1.0), grounds == (own > 0.0) && (alike || !grounds));
+    return Taken(vec4<f32>(to_hdr(behind * through + radiance.rgb, 1.0), 1.0), sky_plane_fits(plane, radiance.a + datum_depth(pixel), own));
 }
 
 struct Corner {
@@ -192,25 +193,24 @@ fn cell_corner(index: u32) -> Corner {
     let bounds = vec4<u32>(level_bounds(FIRST_RATE));
     let place = index / 6u;
     let wide = bounds.z - bounds.x;
-    return Corner(bounds.xy + vec2<u32>(place % wide, place / wide), (vec2<u32>(0x1au, 0x34u) >> vec2<u32>(index % 6u)) & vec2<u32>(1u));
+    return Corner(bounds.xy + vec2<u32>(place % wide, place / wide), (vec2<u32>(0x34u, 0x16u) >> vec2<u32>(index % 6u)) & vec2<u32>(1u));
 }
 fn is_open(cell: vec2<u32>) -> bool {
     return textureLoad(first_plan, cell, 0).x < 0.5;
 }
 // The even cells of the first level.
 @vertex
-fn cell_vertex(@builtin(vertex_index) index: u32) -> SkyCell {
+fn cell_vertex(@builtin(vertex_index) index: u32) -> SkyPlane {
     let corner = cell_corner(index);
-    var out = cell_of(corner.cell);
-    out.position = sky_texel_position(RATE * (corner.cell + corner.place), frame.size.xy);
-    if is_open(corner.cell) {
-        out.position = vec4<f32>(0.0, 0.0, 0.0, 1.0);
-    }
+    let end = min(vec2<f32>(RATE * (corner.cell + corner.place)), frame.size.xy);
+    // Pixels are asked in their middle.
+    var out = sky_plane(cell_of(corner.cell), (end - 0.5) / f32(RATE) - vec2<f32>(corner.cell));
+    out.position = select(full_screen_position(end / frame.size.xy), vec4<f32>(0.0, 0.0, 0.0, 1.0), is_open(corner.cell));
     return out;
 }
 
 @fragment
-fn cell(in: SkyCell) -> @location(0) vec4<f32> {
+fn cell(in: SkyPlane) -> @location(0) vec4<f32> {
     let taken = taken(in, vec2<u32>(in.position.xy));
     if !taken.fits {
         discard;
@@ -236,7 +236,7 @@ fn open_vertex(@builtin(vertex_index) index: u32) -> Varying {
 @fragment
 fn take(in: Varying) -> @location(0) vec4<f32> {
     let pixel = vec2<u32>(in.position.xy);
-    let taken = taken(cell_of(pixel / RATE), pixel);
+    let taken = taken(sky_plane(cell_of(pixel / RATE), vec2<f32>(pixel % RATE) / f32(RATE)), pixel);
     if !taken.fits || textureLoad(plan, pixel / RATE, 0).x < 0.5 {
         discard;
     }

@@ -48,12 +48,10 @@ fn held(in: Varying) -> @location(0) vec4<f32> {
     let pixel = vec2<u32>(in.position.xy);
     let body = bodies.list[sky.ids.x];
     let view = sky_view(frame, in.uv, textureLoad(depth, pixel, 0));
-    let rays = sky_rays(body, airs.list[u32(body.ids.z)], view);
-    let sum = sky_sum(body, view, rays);
+    let light = sky_mean(body, view, sky_spread(body, airs.list[u32(body.ids.z)], view));
     let place = min(pixel / 2u, textureDimensions(front_radiance) - 1u);
     let before = textureLoad(front_radiance, place, 0).rgb;
     let through = textureLoad(front_transmittance, place, 0).rgb;
-    let clear = sum.transmittance / f32(rays);
-    let fog = sum.radiance * (exposure.pre / f32(rays));
-    return vec4<f32>(to_hdr(clear * textureLoad(opaque, pixel, 0).rgb + (1.0 - clear) * before + through * fog, 1.0), 1.0);
+    let clear = light.transmittance;
+    return vec4<f32>(to_hdr(clear * textureLoad(opaque, pixel, 0).rgb + (1.0 - clear) * before + through * (exposure.pre * light.radiance), 1.0), 1.0);
 }

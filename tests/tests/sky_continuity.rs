@@ -311,7 +311,7 @@ fn drawn_jump(altitudes: &[Vec<f64>], sun_zenith: f64, everywhere: bool) -> (f64
             let mut drawn: Vec<Vec<f32>> = Vec::new();
             for h in run {
                 let scene = picture.scene(&with.air, *h, sun);
-                bench.draw(&scene, &mut with, setting).expect("it is drawn");
+                bench.draw(&scene, &mut with, setting, None).expect("it is drawn");
                 drawn.push(bench.read().expect("it can be read"));
             }
             for i in 2..run.len().saturating_sub(1) {

@@ -4,8 +4,12 @@
 //! meters). The luminance that saturates is `1.2·2^EV100` with the lens vignetting q = 0.65 of ISO 12232, so the factor applied to
 //! cd/m² is its reciprocal [Lagarde & de Rousiers 2014, "Moving Frostbite to PBR", §5.1.2].
 
+use glam::Vec3;
+
 /// Bins of the luminance histogram. Bin 0 counts what is darker than [`LOG2_MIN`] and is left out of the meter.
 pub const BINS: usize = 256;
+/// Luminance of the linear sRGB primaries (IEC 61966-2-1).
+pub const LUMINANCE: Vec3 = Vec3::new(0.2126, 0.7152, 0.0722);
 /// log₂ of the luminance (cd/m²) at the lower edge of bin 1: a moonless night's darkest ground.
 pub const LOG2_MIN: f32 = -20.0;
 /// log₂ of the luminance (cd/m²) at the upper edge of the last bin: above the sun's disc (1.9e9 cd/m²).

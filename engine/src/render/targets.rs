@@ -9,6 +9,8 @@ use wgpu::TextureUsages as Use;
 pub const HDR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 /// Format of the depth target: infinite reversed-Z, cleared to 0, compared with Greater.
 pub const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+/// Format of [`SkyLevel::light`]: depths are compared with those of pixels to the last bits.
+pub const SKY_LEVEL: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 /// Format of [`SkyLevel::plan`].
 pub const SKY_PLAN: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
 /// Levels of the bloom chain at most.
@@ -58,7 +60,7 @@ impl Targets {
             sky: [2, 8].map(|rate| {
                 let part = size.map(|n: u32| n.div_ceil(rate).max(1) + 1);
                 SkyLevel {
-                    light: ["sky radiance", "sky transmittance"].map(|name| Texture::new(d, name, part, HDR, hdr)),
+                    light: ["sky radiance", "sky transmittance"].map(|name| Texture::new(d, name, part, SKY_LEVEL, hdr)),
                     plan: Texture::new(d, "sky plan", part, SKY_PLAN, hdr),
                 }
             }),

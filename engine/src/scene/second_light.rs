@@ -5,6 +5,7 @@
 //! (`shaders/lib/second_light.wgsl`).
 
 use super::{Body, Snapshot};
+use crate::light::exposure::LUMINANCE;
 use crate::light::occlusion::{Disc, visible};
 use crate::light::reflected::lambert_sphere;
 use crate::space::relative::{narrow, narrow3};
@@ -20,9 +21,6 @@ pub const DUSK_RAD: f32 = 0.052;
 pub const NIGHT_RAD: f32 = 0.087;
 /// Where the star itself no longer lights any air that can be seen from within it, rad: at 20° it brings 1e-4 of a full moon.
 pub const DARK_RAD: f32 = 0.35;
-
-/// Luminance of the linear sRGB primaries (IEC 61966-2-1).
-const LUMINANCE: Vec3 = Vec3::new(0.2126, 0.7152, 0.0722);
 
 /// A body's second light.
 #[derive(Clone, Copy, Debug, PartialEq)]

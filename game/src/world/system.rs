@@ -4,6 +4,7 @@ use super::eclipse::almanac::Almanac;
 use super::ship::local::air_top_m;
 use super::ship::warp::floor_m;
 use engine::air::{Air, Column};
+use engine::light::exposure::LUMINANCE;
 use engine::light::spectrum::Starlight;
 use engine::orbit::eclipse::Shape;
 use engine::orbit::ephemeris::Ephemeris;
@@ -19,8 +20,6 @@ use engine::units::SPEED_OF_LIGHT;
 use glam::{DVec3, Vec3};
 use std::sync::Arc;
 
-/// Luminance of the linear sRGB primaries (IEC 61966-2-1).
-const LUMINANCE: Vec3 = Vec3::new(0.2126, 0.7152, 0.0722);
 /// Luminous efficacy of the Sun's light above the air, lm/W: 1.28e5 lx of 1361 W/m².
 const SUN_LM_W: f64 = 94.04;
 

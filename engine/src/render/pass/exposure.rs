@@ -2,13 +2,13 @@
 
 use crate::gpu::buffer::Uniform;
 use crate::gpu::{Gpu, ShaderLibrary};
+use crate::light::exposure::LUMINANCE;
 use crate::render::RenderError;
 use crate::render::pass::sun_disc;
 use crate::render::pipeline::{compute_pipeline, texture_entry, uniform_entry, written_entry};
 use crate::render::shared::{FrameContext, Shared};
 use crate::scene::gpu_data::MeterUniform;
 use crate::scene::{AutoOr, Snapshot};
-use glam::Vec3;
 use wgpu::{BindGroupEntry, BufferUsages};
 
 /// Bins of the histogram.
@@ -21,7 +21,7 @@ fn glare_lx(scene: &Snapshot) -> f32 {
     }
     let star = &scene.star;
     let free = sun_disc::free_fraction(scene);
-    free * star.intensity_cd.dot(Vec3::new(0.2126, 0.7152, 0.0722)) / star.centre_m.length_squared().max(1.0)
+    free * star.intensity_cd.dot(LUMINANCE) / star.centre_m.length_squared().max(1.0)
 }
 
 /// The pass.

@@ -175,6 +175,7 @@ impl Stars {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::light::exposure::LUMINANCE;
 
     #[test]
     fn the_catalogue_is_checked() {
@@ -182,7 +183,7 @@ mod tests {
         bytes.extend(1u32.to_le_bytes());
         bytes.extend([0xff, 0x7f, 0, 0, 0, 0, 40, 40]);
         let p = StarCatalogue::parse(&bytes).unwrap().points[0];
-        let lx = Vec3::from(p.illuminance_lx).dot(Vec3::new(0.2126, 0.7152, 0.0722));
+        let lx = Vec3::from(p.illuminance_lx).dot(LUMINANCE);
         assert!((lx / LX_AT_MAGNITUDE_0 - 1.0).abs() < 0.01, "V = 0: {lx}");
         assert!(p.position_m[0] > 0.99e18);
         assert!(StarCatalogue::parse(&bytes[..15]).is_err());

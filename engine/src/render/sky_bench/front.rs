@@ -10,13 +10,17 @@ use super::{Clock, Planet, Setting, SkyBench, Technique};
 use crate::air::Model;
 use crate::air::model::{Gradient, LimbTable, Physical, Thickness, ViewTable};
 use crate::gpu::{Gpu, ShaderLibrary};
+use crate::light::exposure::{BINS, LUMINANCE, bin_of_luminance, ev100_of_histogram, exposure_of_ev100};
 use crate::render::RenderError;
 use crate::render::pass::baseline_bruneton::Sizes;
 use crate::render::pass::sky::STEPS;
+use glam::Vec3;
 use serde::Serialize;
 
 /// Radiance under which a ray judges nobody, sr⁻¹ per unit of the sun's irradiance.
 pub const LEAST: f64 = 1e-7;
+/// Illuminance by the sun above the air that a view is exposed for, lx.
+const SUN_LX: f32 = 1.28e5;
 /// What the reference is less sure of than this, relative, judges nobody.
 const UNSURE: f64 = 0.01;
 
@@ -194,6 +198,7 @@ pub fn run(
         }
     }
     let mut ms = vec![[f64::INFINITY; VIEWS.len()]; entrants.len()];
+    let mut white = [None; VIEWS.len()];
     let mut light = vec![[const { Vec::new() }; VIEWS.len()]; entrants.len()];
     for round in 0..=effort.rounds {
         (watch.note)(&format!("{}: round {round} of {}", planet.name, effort.rounds));
@@ -201,10 +206,15 @@ pub fn run(
             for (e, entrant) in entrants.iter().enumerate() {
                 let Some(with) = prepared.get_mut(of[e]) else { continue };
                 let scene = view.scene(&with.air, planet.sun_rad, size_px);
-                let took = bench.draw(&scene, with, entrant.setting)?;
+                let took = bench.draw(&scene, with, entrant.setting, white[v])?;
                 // The first round compiles, and is the one that is judged.
                 if round == 0 {
-                    let picture = bench.read()?;
+                    let mut picture = bench.read()?;
+                    if e == 0 {
+                        white[v] = Some(exposed_to_white(&picture));
+                        bench.draw(&scene, with, entrant.setting, white[v])?;
+                        picture = bench.read()?;
+                    }
                     (watch.picture)(entrant, view, &picture);
                     light[e][v] = judged(&picture, effort.scale, planet, view, truths);
                 } else {
@@ -225,6 +235,15 @@ pub fn run(
         row.on_front = !places.iter().any(|p| (p.0 < at.0 && p.1 <= at.1) || (p.0 <= at.0 && p.1 < at.1));
     }
     Ok(rows)
+}
+
+/// The radiance that the game's meter would make white, sr⁻¹, under a sun as bright as ours.
+fn exposed_to_white(picture: &[f32]) -> f32 {
+    let mut bins = vec![0; BINS];
+    for p in picture.chunks_exact(4) {
+        bins[bin_of_luminance(LUMINANCE.dot(Vec3::new(p[0], p[1], p[2])) * SUN_LX)] += 1;
+    }
+    1.0 / (exposure_of_ev100(ev100_of_histogram(&bins)) * SUN_LX)
 }
 
 /// Drawn over true, for every ray and channel that judges.

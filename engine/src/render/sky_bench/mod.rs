@@ -15,6 +15,7 @@ use super::maps::MapStore;
 use super::pass::air_tables::AirBaker;
 use super::pass::eclipse_rings::EclipseRings;
 use super::pass::sky::choose::Rect;
+use super::pass::sky::physical::UNSEEN;
 use super::pass::sky::{Draw, Painter, Parts, paint, painter, picture_layout};
 use super::pass::smooth_body::SmoothBody;
 use super::pass::{baseline_bruneton, baseline_hillaire_sky};
@@ -161,11 +162,12 @@ impl<'a> SkyBench<'a> {
         Ok(Prepared { painter, air, own_ms })
     }
 
-    /// Draws `scene`, whose one body has the air that was given, and tells the time of the air, ms.
+    /// Draws `scene`, whose one body has the air that was given, and tells the time of the air, ms. `white`: radiance that the game would expose to 1 there,
+    /// where it is known.
     ///
     /// # Errors
     /// A device that fails or refuses.
-    pub fn draw(&mut self, scene: &Snapshot, prepared: &mut Prepared, setting: Setting) -> Result<f64, RenderError> {
+    pub fn draw(&mut self, scene: &Snapshot, prepared: &mut Prepared, setting: Setting, white: Option<f32>) -> Result<f64, RenderError> {
         let gpu = self.gpu;
         let mut scene = scene.clone();
         scene.force.all = setting.every_pixel;
@@ -176,8 +178,9 @@ impl<'a> SkyBench<'a> {
         let mut settings = prepared.painter.settings_in(&scene, body, &prepared.air);
         let rect = Rect::whole(self.targets.size);
         prepared.painter.place(&mut settings, rect);
-        if let Some(agree) = setting.agree {
-            settings[0][3] = agree;
+        if let Model::Physical(_) = prepared.air.model {
+            settings[0][3] = setting.agree.unwrap_or(settings[0][3]);
+            settings[2][0] = white.map_or(0.0, |w| UNSEEN * PRE * w);
         }
         self.uniform.write(&gpu.queue, &SkyUniform { ids: [0, setting.steps, 0, 0], settings });
         self.timer.begin_frame();

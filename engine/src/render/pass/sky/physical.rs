@@ -12,9 +12,9 @@ use crate::gpu::Gpu;
 use crate::gpu::texture::Texture;
 use crate::light::shadow::Shadow;
 use crate::render::RenderError;
-use crate::render::pipeline::{PipelineKind, Stencil, texture_entry};
+use crate::render::pipeline::{PipelineKind, Stencil, loaded_entry};
 use crate::render::shared::FrameContext;
-use crate::render::targets::{HDR, SKY_PLAN, SkyLevel};
+use crate::render::targets::{HDR, SKY_LEVEL, SKY_PLAN, SkyLevel};
 use crate::scene::gpu_data::{SkySettings, vec4};
 use crate::scene::{Body, Snapshot};
 use crate::space::relative::narrow3;
@@ -24,6 +24,9 @@ use wgpu::{BindGroupEntry, BindingResource};
 /// Of its light, how much a pixel may err by interpolation, as it is found from differences of fourth order: a fifth of it where light is smooth,
 /// three times it at a kink on a line one pixel wide.
 pub const AGREE: f32 = 0.003;
+
+/// Pre-exposed light of which nobody sees an error: a thousandth of white.
+pub const UNSEEN: f32 = 1e-3;
 
 /// What most airs do without: media that are tables, and shadows of other worlds.
 const PLAIN: [(&str, f64); 2] = [("MEDIA_TABLES", 0.0), ("AIR_ECLIPSES", 0.0)];
@@ -81,7 +84,7 @@ struct Physical {
 
 impl Physical {
     fn new(parts: &Parts<'_>) -> Result<Self, RenderError> {
-        let own = [0, 1, 2, 3].map(|i| texture_entry(i, wgpu::TextureViewDimension::D2));
+        let own = [0, 1, 2, 3].map(|i| loaded_entry(i, wgpu::TextureViewDimension::D2));
         let kind = PainterKind::new(parts, "pass/sky_physical.wgsl", &own)?;
         let groups = [&parts.shared.frame_layout, &parts.shared.light_layout, parts.picture, &kind.own_layout];
         let rates = [(&[][..], FINE), (&PLAIN[..1], 8), (&PLAIN[..], 8)].map(|(air, first)| {
@@ -94,7 +97,7 @@ impl Physical {
                 PipelineKind { vertex, entry, colours, constants, stencil, ..plain }.make(parts.gpu)
             };
             let coarse = (first != FINE).then(|| Coarse {
-                march: of("vertex", "march_level", HDR, [first, first, 0], None),
+                march: of("vertex", "march_level", SKY_LEVEL, [first, first, 0], None),
                 plan: of("vertex", "plan_level", SKY_PLAN, [first, first, 0], None),
                 cells: of("cell_vertex", "cell", HDR, [first, 1, 0], Some(Stencil::Marks)),
             });
@@ -103,7 +106,7 @@ impl Physical {
                 full: of("vertex", "fragment", HDR, [1, 1, 0], None),
                 first,
                 coarse,
-                march: of(open, "march_level", HDR, [FINE, FINE, 1], None),
+                march: of(open, "march_level", SKY_LEVEL, [FINE, FINE, 1], None),
                 plan: of(open, "plan_level", SKY_PLAN, [FINE, FINE, 0], None),
                 take: of(open, "take", HDR, [FINE, 1, 0], Some(Stencil::Marks)),
                 rest: of("vertex", "fragment", HDR, [1, 1, 0], Some(Stencil::Unmarked)),
@@ -122,6 +125,7 @@ impl Painter for Physical {
     fn settings(&self, _body: &Body, air: &Air) -> SkySettings {
         let mut all = no_settings();
         all[0] = vec4(greatest_extinction(&air.medium), AGREE);
+        all[2][0] = UNSEEN;
         all
     }
     fn place(&self, settings: &mut SkySettings, rect: Rect) {
