@@ -54,9 +54,17 @@ fn orders_altitude(air: Air, row: u32) -> f32 {
     return min(root * root, 1.0) * air.shape.y;
 }
 
-// Coordinate of the view's zenith cosine, 0 to 1: nearly even in the angle.
-fn orders_view_z(mu: f32) -> f32 {
-    return 0.5 + 0.5 * sign(mu) * (1.0 - sqrt(max(1.0 - abs(mu), 0.0)));
+// How much denser views lie at the horizon than on the mean.
+const ORDERS_NEAR: f32 = 0.5;
+
+// Coordinate of the view's zenith cosine, 0 to 1, from the dip: 0.5 is the horizon, and where views are dense. Twin: view_cosine.
+fn orders_view_z(dip: vec2<f32>, mu: f32) -> f32 {
+    let level = sqrt(max(1.0 - mu * mu, 0.0));
+    let sine = mu * dip.y + level * dip.x;
+    // tan(e/2) of the angle e from the horizon, by its most on this side.
+    let part = abs(sine) * dip.y / max((1.0 + level * dip.y - mu * dip.x) * (1.0 + sign(sine) * dip.x), 1e-9);
+    let x = sqrt(0.25 * ORDERS_NEAR * ORDERS_NEAR + (1.0 - ORDERS_NEAR) * min(part, 1.0)) - 0.5 * ORDERS_NEAR;
+    return 0.5 + sign(sine) * x * (0.5 / (1.0 - ORDERS_NEAR));
 }
 
 // Cosines of 1, 2, 3 and 4 times the azimuth of a view of zenith cosine `mu` from the sun of zenith cosine `mu_s`, `turn` the cosine between the two.
@@ -73,7 +81,7 @@ fn orders_decode(coded: vec4<f32>, azimuth: vec4<f32>) -> f32 {
     let mean = coded.x * coded.x;
     var shape = 1.0 + dot(coded.yzw, azimuth.xyz);
     if min(coded.z, coded.w) > 0.0 {
-        let q = min(coded.w / coded.z, 0.75);
+        let q = min(coded.w / coded.z, 0.85);
         shape += coded.w * q * (azimuth.w - q * azimuth.z) / (1.0 + q * q - 2.0 * q * azimuth.x);
     }
     return mean * mean * max(shape, 0.0);
@@ -93,12 +101,13 @@ fn orders_encode(modes: vec4<f32>) -> vec4<f32> {
 fn air_orders(
     air: Air, table: texture_3d<f32>, linear: sampler, slot: i32, altitude: f32, mu_s: f32, mu: f32, turn: f32,
 ) -> vec3<f32> {
-    let x = orders_sun_x(air, horizon_dip(air.shape.x, altitude), mu_s);
+    let dip = horizon_dip(air.shape.x, altitude);
+    let x = orders_sun_x(air, dip, mu_s);
     let y = orders_altitude_y(air, altitude);
     let red = vec3<f32>(
         x * f32(ORDERS_SUNS - 1u) + 0.5,
         f32(slot) * f32(ORDERS_ALTITUDES) + y * f32(ORDERS_ALTITUDES - 1u) + 0.5,
-        orders_view_z(mu) * f32(ORDERS_VIEWS - 1u) + 0.5,
+        orders_view_z(dip, mu) * f32(ORDERS_VIEWS - 1u) + 0.5,
     ) / ORDERS_SIZE;
     let azimuth = orders_azimuth(mu, mu_s, turn);
     return vec3<f32>(

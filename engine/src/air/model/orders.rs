@@ -36,8 +36,10 @@ pub use super::sun_map::SunMap;
 pub const SUNS: usize = 32;
 /// Altitudes in a table: [`Levels`].
 pub const ALTITUDES: usize = 16;
-/// Zenith cosines of the view in a table, nearly even in the angle.
+/// Zenith cosines of the view in a table: from the horizon up and down, where a peak's light changes most.
 pub const VIEWS: usize = 20;
+/// By what views lie denser at the horizon than on the mean.
+const NEAR: f64 = 0.5;
 /// Directions from an altitude that leave the air, and that meet the ground.
 pub const UP: usize = 12;
 /// See [`UP`].
@@ -46,6 +48,8 @@ pub const DOWN: usize = 8;
 pub const DIRECTIONS: usize = UP + DOWN;
 /// Steps along a direction.
 pub const STEPS: usize = 16;
+/// See [`peaked`].
+const PEAKED: f64 = 0.01;
 /// Degree to which the sum over the directions from an altitude is exact.
 const EXACT: usize = 8;
 /// Fourier modes in the azimuth.
@@ -76,6 +80,8 @@ pub struct Plan {
     pub rows: Vec<[f32; 4]>,
     /// Orders to compute before they are combined; 0: none, and nothing of what they need is in the rows.
     pub orders: u32,
+    /// Whether forward peaks turn so much light that azimuths must lie close.
+    pub peaked: bool,
     /// Row at which the solution of deep air begins.
     pub deep: Option<u32>,
 }
@@ -101,7 +107,7 @@ impl Plan {
         let classes = classes(medium);
         let share = streams::share(medium, &Classes::of(medium).list);
         let levels = Levels::new(medium);
-        let mut plan = Self { rows: Vec::new(), orders: 0, deep: None };
+        let mut plan = Self { rows: Vec::new(), orders: 0, peaked: peaked(medium, &classes), deep: None };
         if share.min_element() < 1.0 {
             plan.orders = orders(medium, share);
             plan.rows = rows(medium, &classes, &levels);
@@ -121,7 +127,6 @@ fn rows(medium: &Medium, classes: &[(Class, Truncated)], levels: &Levels) -> Vec
     let mut rows = Vec::with_capacity(ROWS);
     let [mut kernels, mut drawn] = [(); 2].map(|()| Vec::with_capacity(DRAWN_AT - KERNELS_AT));
     let matter = Matter::new(medium, classes);
-    let around: Vec<_> = (0..VIEWS).map(view_cosine).map(Around::new).collect();
     for row in 0..ALTITUDES {
         let altitude_m = levels.altitude_m(row);
         let directions = directions(medium, altitude_m);
@@ -129,6 +134,8 @@ fn rows(medium: &Medium, classes: &[(Class, Truncated)], levels: &Levels) -> Vec
             paths::rows(&matter, levels, altitude_m, direction, i >= UP, &mut rows);
         }
         let shares = shares(medium, classes, levels, row);
+        let dip = dip(medium.bottom_radius_m, altitude_m);
+        let around: Vec<_> = (0..VIEWS).map(|view| view_cosine(view, dip)).map(|cosine| (cosine, Around::new(cosine))).collect();
         kernel_rows(classes, shares, (&directions, horizon(medium, altitude_m)), &around, [&mut kernels, &mut drawn]);
     }
     rows.append(&mut kernels);
@@ -150,6 +157,18 @@ fn orders(medium: &Medium, deep: DVec3) -> u32 {
     }
     let depth = (0..3).filter(|c| deep[*c] < 1.0).map(|c| depth[c]).fold(0.0, f64::max);
     [(0.5, 4), (3.0, 5), (8.0, 6)].into_iter().find(|(limit, _)| depth < *limit).map_or(MAX_ORDERS, |(_, n)| n)
+}
+
+/// Whether forward peaks scatter more than [`PEAKED`] of the light that crosses the air straight down.
+fn peaked(medium: &Medium, classes: &[(Class, Truncated)]) -> bool {
+    const PARTS: i32 = 64;
+    let of_part = |i: i32| {
+        let x = (f64::from(i) + 0.5) / f64::from(PARTS);
+        let width = 2.0 * x / f64::from(PARTS) * medium.top_altitude_m;
+        let scattered = |class: &Class| class.scattering(medium, x * x * medium.top_altitude_m).max_element();
+        classes.iter().map(|(class, cut)| scattered(class) * cut.share * width).sum::<f64>()
+    };
+    (0..PARTS).map(of_part).sum::<f64>() > PEAKED
 }
 
 /// Nodes and weights of Gauss–Legendre quadrature on [0, 1].
@@ -236,10 +255,13 @@ pub(super) fn row3(v: DVec3, w: f64) -> [f32; 4] {
     [v.x, v.y, v.z, w].map(|x| if x.is_finite() { narrow(x) } else { 0.0 })
 }
 
-/// Zenith cosine of a table's view.
-pub fn view_cosine(view: usize) -> f64 {
+/// Zenith cosine of a table's view where the horizon dips by so much (sine, cosine).
+pub fn view_cosine(view: usize, (sine, cosine): (f64, f64)) -> f64 {
     let x = 2.0 * view as f64 / (VIEWS - 1) as f64 - 1.0;
-    x.signum() * (1.0 - (1.0 - x.abs()) * (1.0 - x.abs()))
+    // tan(e/2) of the angle e from the horizon, by its most on this side.
+    let part = x * (NEAR + (1.0 - NEAR) * x.abs());
+    let e = 2.0 * libm::atan2(part * (1.0 + x.signum() * sine), cosine);
+    (libm::sin(e) * cosine - libm::cos(e) * sine).clamp(-1.0, 1.0)
 }
 
 /// Normalised Legendre functions of order 0 at a cosine, degree 0 to [`EXACT`].
@@ -275,7 +297,7 @@ fn kernel_rows(
     classes: &[(Class, Truncated)],
     shares: [DVec3; Classes::MAX],
     (directions, horizon): (&[Direction], f64),
-    around: &[Around],
+    around: &[(f64, Around)],
     [next, drawn]: [&mut Vec<[f32; 4]>; 2],
 ) {
     const AZIMUTHS: usize = 24;
@@ -287,8 +309,8 @@ fn kernel_rows(
             (libm::cos(turn), core::array::from_fn(|m| libm::cos(m as f64 * turn) / AZIMUTHS as f64 * if m > 0 { 2.0 } else { 1.0 }))
         })
         .collect();
-    for (view, around) in around.iter().enumerate() {
-        let cosine = view_cosine(view);
+    for (cosine, around) in around {
+        let cosine = *cosine;
         let mut kernels = vec![[[DVec3::ZERO; MODES]; 2]; directions.len()];
         for (((class, truncated), share), lobe) in used.iter().zip(&lobes) {
             let (foot, with_peak) = lobe.as_ref().map_or((truncated.cap, 0.0), |lobe| (lobe.foot, lobe.light));
@@ -374,7 +396,7 @@ mod tests {
                 let at = DRAWN_AT + (altitude * VIEWS + view) * DIRECTIONS * 3;
                 let found: f64 =
                     directions.iter().enumerate().map(|(d, x)| f64::from(plan.rows[at + d * 3][0]) * x.cosine * x.cosine).sum();
-                let c = view_cosine(view);
+                let c = view_cosine(view, dip(medium.bottom_radius_m, Levels::new(&medium).altitude_m(altitude)));
                 let truth = 1.0 / 3.0 + 0.1 * (c * c - 1.0 / 3.0);
                 assert!((found / truth - 1.0).abs() < 2e-3, "row {altitude}, view {view}: {found} {truth}");
             }

@@ -143,11 +143,12 @@ impl OrdersBaker {
         };
         let orders = if plan.orders > 0 { plan.orders.clamp(2, MAX_ORDERS) } else { 0 };
         let deep = plan.deep.unwrap_or(0);
+        let peaked = u32::from(plan.peaked);
         let is_deep = u32::from(plan.deep.is_some());
         let plan = buffer(bytemuck::cast_slice(&plan.rows), BufferUsages::STORAGE);
         let (directions, views, altitudes) = (DIRECTIONS as u32, VIEWS as u32, ALTITUDES as u32);
         for order in 0..orders {
-            let number = buffer(bytemuck::bytes_of(&[order, orders, inputs.slot, 0]), BufferUsages::UNIFORM);
+            let number = buffer(bytemuck::bytes_of(&[order, orders, inputs.slot, peaked]), BufferUsages::UNIFORM);
             let group = bind(
                 gpu,
                 &self.layout,
