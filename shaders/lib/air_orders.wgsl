@@ -54,17 +54,19 @@ fn orders_altitude(air: Air, row: u32) -> f32 {
     return min(root * root, 1.0) * air.shape.y;
 }
 
-// How much denser views lie at the horizon than on the mean.
+// How far the first views lie from the horizon: tan(e/2) by the coordinate there.
 const ORDERS_NEAR: f32 = 0.5;
 
 // Coordinate of the view's zenith cosine, 0 to 1, from the dip: 0.5 is the horizon, and where views are dense. Twin: view_cosine.
 fn orders_view_z(dip: vec2<f32>, mu: f32) -> f32 {
     let level = sqrt(max(1.0 - mu * mu, 0.0));
     let sine = mu * dip.y + level * dip.x;
-    // tan(e/2) of the angle e from the horizon, by its most on this side.
-    let part = abs(sine) * dip.y / max((1.0 + level * dip.y - mu * dip.x) * (1.0 + sign(sine) * dip.x), 1e-9);
-    let x = sqrt(0.25 * ORDERS_NEAR * ORDERS_NEAR + (1.0 - ORDERS_NEAR) * min(part, 1.0)) - 0.5 * ORDERS_NEAR;
-    return 0.5 + sign(sine) * x * (0.5 / (1.0 - ORDERS_NEAR));
+    // tan(e/2) of the angle e from the horizon is n x + (most − n) x².
+    let t = abs(sine) / max(1.0 + level * dip.y - mu * dip.x, 1e-6);
+    let most = (1.0 + sign(sine) * dip.x) / dip.y;
+    let half = min(0.5 * ORDERS_NEAR, 0.5 * most);
+    let x = t / (half + sqrt(max(half * half + (most - 2.0 * half) * t, 0.0)));
+    return 0.5 + 0.5 * sign(sine) * min(x, 1.0);
 }
 
 // Cosines of 1, 2, 3 and 4 times the azimuth of a view of zenith cosine `mu` from the sun of zenith cosine `mu_s`, `turn` the cosine between the two.

@@ -38,7 +38,7 @@ pub const SUNS: usize = 32;
 pub const ALTITUDES: usize = 16;
 /// Zenith cosines of the view in a table: from the horizon up and down, where a peak's light changes most.
 pub const VIEWS: usize = 20;
-/// By what views lie denser at the horizon than on the mean.
+/// How far the first views lie from the horizon: tan(e/2) of the angle e by the coordinate there.
 const NEAR: f64 = 0.5;
 /// Directions from an altitude that leave the air, and that meet the ground.
 pub const UP: usize = 12;
@@ -258,9 +258,10 @@ pub(super) fn row3(v: DVec3, w: f64) -> [f32; 4] {
 /// Zenith cosine of a table's view where the horizon dips by so much (sine, cosine).
 pub fn view_cosine(view: usize, (sine, cosine): (f64, f64)) -> f64 {
     let x = 2.0 * view as f64 / (VIEWS - 1) as f64 - 1.0;
-    // tan(e/2) of the angle e from the horizon, by its most on this side.
-    let part = x * (NEAR + (1.0 - NEAR) * x.abs());
-    let e = 2.0 * libm::atan2(part * (1.0 + x.signum() * sine), cosine);
+    // tan(e/2) of the angle e from the horizon.
+    let most = (1.0 + x.signum() * sine) / cosine;
+    let near = NEAR.min(most);
+    let e = 2.0 * libm::atan(x * (near + (most - near) * x.abs()));
     (libm::sin(e) * cosine - libm::cos(e) * sine).clamp(-1.0, 1.0)
 }
 
