@@ -54,19 +54,15 @@ fn orders_altitude(air: Air, row: u32) -> f32 {
     return min(root * root, 1.0) * air.shape.y;
 }
 
-// How far the first views lie from the horizon: tan(e/2) by the coordinate there.
-const ORDERS_NEAR: f32 = 0.5;
+// How far the first views lie from the level: tan(e/2) by the coordinate there.
+const ORDERS_NEAR: f32 = 0.6;
 
-// Coordinate of the view's zenith cosine, 0 to 1, from the dip: 0.5 is the horizon, and where views are dense. Twin: view_cosine.
-fn orders_view_z(dip: vec2<f32>, mu: f32) -> f32 {
-    let level = sqrt(max(1.0 - mu * mu, 0.0));
-    let sine = mu * dip.y + level * dip.x;
-    // tan(e/2) of the angle e from the horizon is n x + (most − n) x².
-    let t = abs(sine) / max(1.0 + level * dip.y - mu * dip.x, 1e-6);
-    let most = (1.0 + sign(sine) * dip.x) / dip.y;
-    let half = min(0.5 * ORDERS_NEAR, 0.5 * most);
-    let x = t / (half + sqrt(max(half * half + (most - 2.0 * half) * t, 0.0)));
-    return 0.5 + 0.5 * sign(sine) * min(x, 1.0);
+// Coordinate of the view's zenith cosine, 0 to 1: of tan(e/2) = x (n + (1 − n) x), e the angle from the level. Twin: view_cosine.
+fn orders_view_z(mu: f32) -> f32 {
+    let t = abs(mu) / (1.0 + sqrt(max(1.0 - mu * mu, 0.0)));
+    let half = 0.5 * ORDERS_NEAR;
+    let x = t / (half + sqrt(half * half + (1.0 - ORDERS_NEAR) * t));
+    return 0.5 + 0.5 * sign(mu) * x;
 }
 
 // Cosines of 1, 2, 3 and 4 times the azimuth of a view of zenith cosine `mu` from the sun of zenith cosine `mu_s`, `turn` the cosine between the two.
@@ -103,13 +99,12 @@ fn orders_encode(modes: vec4<f32>) -> vec4<f32> {
 fn air_orders(
     air: Air, table: texture_3d<f32>, linear: sampler, slot: i32, altitude: f32, mu_s: f32, mu: f32, turn: f32,
 ) -> vec3<f32> {
-    let dip = horizon_dip(air.shape.x, altitude);
-    let x = orders_sun_x(air, dip, mu_s);
+    let x = orders_sun_x(air, horizon_dip(air.shape.x, altitude), mu_s);
     let y = orders_altitude_y(air, altitude);
     let red = vec3<f32>(
         x * f32(ORDERS_SUNS - 1u) + 0.5,
         f32(slot) * f32(ORDERS_ALTITUDES) + y * f32(ORDERS_ALTITUDES - 1u) + 0.5,
-        orders_view_z(dip, mu) * f32(ORDERS_VIEWS - 1u) + 0.5,
+        orders_view_z(mu) * f32(ORDERS_VIEWS - 1u) + 0.5,
     ) / ORDERS_SIZE;
     let azimuth = orders_azimuth(mu, mu_s, turn);
     return vec3<f32>(

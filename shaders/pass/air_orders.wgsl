@@ -112,7 +112,7 @@ fn next(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_index) k
         let place = plan[step];
         let row = plan[step + 1u];
         let arrives = plan[step + 2u].rgb;
-        let z = orders_view_z(row.yz, place.z) * f32(ORDERS_VIEWS - 1u);
+        let z = orders_view_z(place.z) * f32(ORDERS_VIEWS - 1u);
         workgroupBarrier();
         red[k] = source_between(z, row, k, 0u);
         green[k] = source_between(z, row, k, 1u);

@@ -126,12 +126,12 @@ fn rays_through_other_planets_of_all_orders() {
     errors.hold("small", 0.28, 1.35);
 }
 
-/// Airs unlike those that the tables were made with: most of the altitudes empty, an edge, a sharp lobe in much haze.
+/// Airs unlike those that the tables were made with: most of the altitudes empty, an edge, a sharp lobe in much haze and in dust, a layer of dust aloft.
 #[test]
 fn rays_through_airs_of_another_kind() {
     let gpu = tests::gpu();
     let mut errors = Errors::default();
-    for name in ["tall", "step", "haze"] {
+    for name in ["tall", "step", "haze", "aloft", "dust"] {
         let truths: Vec<Truth> = read(OTHER).into_iter().filter(|t| t.planet == name).collect();
         errors.add(&gpu, name, &truths, |t| format!("{name} {}", if sun_zenith_deg(&t.id) <= 85.0 { "day" } else { "dusk" }));
     }

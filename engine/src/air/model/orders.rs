@@ -36,10 +36,10 @@ pub use super::sun_map::SunMap;
 pub const SUNS: usize = 32;
 /// Altitudes in a table: [`Levels`].
 pub const ALTITUDES: usize = 16;
-/// Zenith cosines of the view in a table: from the horizon up and down, where a peak's light changes most.
+/// Zenith cosines of the view in a table: densest at the level, about which horizons lie and a peak's light changes most.
 pub const VIEWS: usize = 20;
-/// How far the first views lie from the horizon: tan(e/2) of the angle e by the coordinate there.
-const NEAR: f64 = 0.5;
+/// How far the first views lie from the level: tan(e/2) of the angle e by the coordinate there.
+const NEAR: f64 = 0.6;
 /// Directions from an altitude that leave the air, and that meet the ground.
 pub const UP: usize = 12;
 /// See [`UP`].
@@ -127,6 +127,7 @@ fn rows(medium: &Medium, classes: &[(Class, Truncated)], levels: &Levels) -> Vec
     let mut rows = Vec::with_capacity(ROWS);
     let [mut kernels, mut drawn] = [(); 2].map(|()| Vec::with_capacity(DRAWN_AT - KERNELS_AT));
     let matter = Matter::new(medium, classes);
+    let around: Vec<_> = (0..VIEWS).map(view_cosine).map(Around::new).collect();
     for row in 0..ALTITUDES {
         let altitude_m = levels.altitude_m(row);
         let directions = directions(medium, altitude_m);
@@ -134,8 +135,6 @@ fn rows(medium: &Medium, classes: &[(Class, Truncated)], levels: &Levels) -> Vec
             paths::rows(&matter, levels, altitude_m, direction, i >= UP, &mut rows);
         }
         let shares = shares(medium, classes, levels, row);
-        let dip = dip(medium.bottom_radius_m, altitude_m);
-        let around: Vec<_> = (0..VIEWS).map(|view| view_cosine(view, dip)).map(|cosine| (cosine, Around::new(cosine))).collect();
         kernel_rows(classes, shares, (&directions, horizon(medium, altitude_m)), &around, [&mut kernels, &mut drawn]);
     }
     rows.append(&mut kernels);
@@ -255,14 +254,12 @@ pub(super) fn row3(v: DVec3, w: f64) -> [f32; 4] {
     [v.x, v.y, v.z, w].map(|x| if x.is_finite() { narrow(x) } else { 0.0 })
 }
 
-/// Zenith cosine of a table's view where the horizon dips by so much (sine, cosine).
-pub fn view_cosine(view: usize, (sine, cosine): (f64, f64)) -> f64 {
+/// Zenith cosine of a table's view.
+pub fn view_cosine(view: usize) -> f64 {
     let x = 2.0 * view as f64 / (VIEWS - 1) as f64 - 1.0;
-    // tan(e/2) of the angle e from the horizon.
-    let most = (1.0 + x.signum() * sine) / cosine;
-    let near = NEAR.min(most);
-    let e = 2.0 * libm::atan(x * (near + (most - near) * x.abs()));
-    (libm::sin(e) * cosine - libm::cos(e) * sine).clamp(-1.0, 1.0)
+    // tan(e/2) of the angle e from the level.
+    let t = x * (NEAR + (1.0 - NEAR) * x.abs());
+    2.0 * t / (1.0 + t * t)
 }
 
 /// Normalised Legendre functions of order 0 at a cosine, degree 0 to [`EXACT`].
@@ -298,7 +295,7 @@ fn kernel_rows(
     classes: &[(Class, Truncated)],
     shares: [DVec3; Classes::MAX],
     (directions, horizon): (&[Direction], f64),
-    around: &[(f64, Around)],
+    around: &[Around],
     [next, drawn]: [&mut Vec<[f32; 4]>; 2],
 ) {
     const AZIMUTHS: usize = 24;
@@ -310,8 +307,8 @@ fn kernel_rows(
             (libm::cos(turn), core::array::from_fn(|m| libm::cos(m as f64 * turn) / AZIMUTHS as f64 * if m > 0 { 2.0 } else { 1.0 }))
         })
         .collect();
-    for (cosine, around) in around {
-        let cosine = *cosine;
+    for (view, around) in around.iter().enumerate() {
+        let cosine = view_cosine(view);
         let mut kernels = vec![[[DVec3::ZERO; MODES]; 2]; directions.len()];
         for (((class, truncated), share), lobe) in used.iter().zip(&lobes) {
             let (foot, with_peak) = lobe.as_ref().map_or((truncated.cap, 0.0), |lobe| (lobe.foot, lobe.light));
@@ -397,7 +394,7 @@ mod tests {
                 let at = DRAWN_AT + (altitude * VIEWS + view) * DIRECTIONS * 3;
                 let found: f64 =
                     directions.iter().enumerate().map(|(d, x)| f64::from(plan.rows[at + d * 3][0]) * x.cosine * x.cosine).sum();
-                let c = view_cosine(view, dip(medium.bottom_radius_m, Levels::new(&medium).altitude_m(altitude)));
+                let c = view_cosine(view);
                 let truth = 1.0 / 3.0 + 0.1 * (c * c - 1.0 / 3.0);
                 assert!((found / truth - 1.0).abs() < 2e-3, "row {altitude}, view {view}: {found} {truth}");
             }

@@ -31,19 +31,22 @@ impl Around {
     /// Of a view's zenith cosine.
     pub(super) fn new(view: f64) -> Self {
         let across = (1.0 - view * view).max(0.0).sqrt();
-        let rings: [(f64, f64); RINGS] = core::array::from_fn(|i| libm::sincos(ring(i).0));
-        let turns: [(f64, f64); POINTS] = core::array::from_fn(|j| libm::sincos(PI * (j as f64 + 0.5) / POINTS as f64));
-        let points = rings.into_iter().flat_map(|ring| turns.map(|turn| (ring, turn)));
-        let point = |((sin, cos), (aside, up)): ((f64, f64), (f64, f64))| {
-            let cosine = (view * cos + across * sin * up).clamp(-1.0, 1.0);
-            // Of the turn from the view's meridian, by what is along it and aside.
-            let (along, aside) = (across * cos - view * sin * up, sin * aside);
-            let c = along / (along * along + aside * aside).sqrt().max(1e-300);
-            let mut modes = [1.0, 2.0 * c, 0.0, 0.0];
-            (2..MODES).for_each(|m| modes[m] = 2.0 * c * modes[m - 1] - if m > 2 { modes[m - 2] } else { 2.0 });
-            (libm::acos(cosine), modes)
-        };
-        Self(points.map(point).collect())
+        let points = (0..RINGS).flat_map(|i| (0..POINTS).map(move |j| (i, j)));
+        Self(
+            points
+                .map(|(i, j)| {
+                    let (sin, cos) = libm::sincos(ring(i).0);
+                    let (up, aside) = {
+                        let (s, c) = libm::sincos(PI * (j as f64 + 0.5) / POINTS as f64);
+                        (c, s)
+                    };
+                    let cosine = (view * cos + across * sin * up).clamp(-1.0, 1.0);
+                    // From the view's meridian: aside, and along.
+                    let turn = libm::atan2(sin * aside, across * cos - view * sin * up);
+                    (libm::acos(cosine), core::array::from_fn(|m| libm::cos(m as f64 * turn) * if m > 0 { 2.0 } else { 1.0 }))
+                })
+                .collect(),
+        )
     }
 }
 

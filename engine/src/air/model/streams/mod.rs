@@ -152,6 +152,7 @@ fn of_mode(
         .collect();
     let albedo = f64::from(column.medium.ground_albedo[channel]);
     let found = light(&basis, &column.slabs(channel), &classes, albedo, beam, on_ground);
+    let views: Vec<[f64; TERMS]> = (0..VIEWS).map(|view| harmonics(mode, view_cosine(view))).collect();
     let mut out = Found { source: Vec::with_capacity(ALTITUDES * VIEWS * SUNS), lit: Vec::new() };
     for ((h, between), shares) in altitudes.iter().zip(between).zip(shares) {
         let (i, f) = column.place(*h);
@@ -174,9 +175,8 @@ fn of_mode(
                 core::array::from_fn(|l| factors[l] * (a * at[*k].0[l] + b * at[k + 1].0[l]))
             })
             .collect();
-        let dip = dip(column.medium.bottom_radius_m, *h);
-        for view in (0..VIEWS).map(|view| harmonics(mode, view_cosine(view, dip))) {
-            out.source.extend(of_suns.iter().map(|s| s.iter().zip(&view).map(|(s, y)| s * y).sum::<f64>()));
+        for view in &views {
+            out.source.extend(of_suns.iter().map(|s| s.iter().zip(view).map(|(s, y)| s * y).sum::<f64>()));
         }
         if mode == 0 {
             out.lit.extend(between.iter().map(|(k, f)| {
