@@ -54,9 +54,15 @@ fn orders_altitude(air: Air, row: u32) -> f32 {
     return min(root * root, 1.0) * air.shape.y;
 }
 
-// Coordinate of the view's zenith cosine, 0 to 1: nearly even in the angle.
+// How far the first views lie from the level: tan(e/2) by the coordinate there.
+const ORDERS_NEAR: f32 = 0.6;
+
+// Coordinate of the view's zenith cosine, 0 to 1: of tan(e/2) = x (n + (1 − n) x), e the angle from the level. Twin: view_cosine.
 fn orders_view_z(mu: f32) -> f32 {
-    return 0.5 + 0.5 * sign(mu) * (1.0 - sqrt(max(1.0 - abs(mu), 0.0)));
+    let t = abs(mu) / (1.0 + sqrt(max(1.0 - mu * mu, 0.0)));
+    let half = 0.5 * ORDERS_NEAR;
+    let x = t / (half + sqrt(half * half + (1.0 - ORDERS_NEAR) * t));
+    return 0.5 + 0.5 * sign(mu) * x;
 }
 
 // Cosines of 1, 2, 3 and 4 times the azimuth of a view of zenith cosine `mu` from the sun of zenith cosine `mu_s`, `turn` the cosine between the two.
@@ -73,7 +79,7 @@ fn orders_decode(coded: vec4<f32>, azimuth: vec4<f32>) -> f32 {
     let mean = coded.x * coded.x;
     var shape = 1.0 + dot(coded.yzw, azimuth.xyz);
     if min(coded.z, coded.w) > 0.0 {
-        let q = min(coded.w / coded.z, 0.75);
+        let q = min(coded.w / coded.z, 0.85);
         shape += coded.w * q * (azimuth.w - q * azimuth.z) / (1.0 + q * q - 2.0 * q * azimuth.x);
     }
     return mean * mean * max(shape, 0.0);

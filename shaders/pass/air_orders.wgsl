@@ -7,16 +7,18 @@
 #include "lib/air_orders_plan.wgsl"
 
 const SUN_RAD: f32 = 0.0047;
-// Cosines of azimuths of half the circle; the other half is its mirror image. Denser towards the sun, where hazes glow: π x^1.4 of the middles x of even
-// parts; the weights make sums of cos mφ exact to m = 6, so for the product of any two modes.
-const AZIMUTHS: u32 = 8u;
-const COSINE: array<f32, 8> = array<f32, 8>(0.9979031, 0.9548789, 0.8159015, 0.5508123, 0.1661697, -0.2844450, -0.7020766, -0.9633941);
-const WEIGHT: array<f32, 8> = array<f32, 8>(0.0552600, 0.0861067, 0.1116115, 0.1255524, 0.1385673, 0.1512886, 0.1603287, 0.1712848);
+// How many azimuths of half the circle are gathered; the other half is its mirror image.
+override AZIMUTHS: u32 = 8u;
+
+struct Order {
+    numbers: vec4<u32>,                // which (0: the first), how many, slot, 0
+    azimuths: array<vec4<f32>, 16>,    // cosine, weight, 0, 0
+}
 
 @group(0) @binding(0) var<uniform> air: Air;
 @group(0) @binding(1) var transmittance: texture_2d_array<f32>;               // of this air alone
 @group(0) @binding(2) var linear: sampler;
-@group(0) @binding(3) var<uniform> order: vec4<u32>;                          // which (0: the first), how many, slot, 0
+@group(0) @binding(3) var<uniform> order: Order;
 @group(0) @binding(4) var<storage, read> plan: array<vec4<f32>>;
 @group(0) @binding(5) var<storage, read_write> gathered: array<vec4<f32>>;    // altitude, direction, sun: modes of red, of green, of blue
 @group(0) @binding(6) var<storage, read_write> sources: array<vec4<f32>>;     // order, altitude, view, sun: coded modes of red, of green, of blue
@@ -63,7 +65,7 @@ fn first(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_index) 
     let across = sqrt(max((1.0 - mu * mu) * (1.0 - head.x * head.x), 0.0));
     var sum = Modes(vec4<f32>(0.0), vec4<f32>(0.0), vec4<f32>(0.0));
     for (var a = 0u; a < AZIMUTHS; a++) {
-        let turn = across * COSINE[a] + mu * head.x;
+        let turn = across * order.azimuths[a].x + mu * head.x;
         let phase = min(air_phase(air, media, 0, turn), air.cap);
         var light = vec3<f32>(0.0);
         for (var i = 0u; i < PLAN_STEPS; i++) {
@@ -81,17 +83,16 @@ fn first(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_index) 
             light += ground * (mu_s * visible_above_limb(SUN_RAD, asin_small(min(mu_s, 0.3))))
                 * air_sun_beam(air, transmittance, linear, 1, 0.0, mu_s).rgb;
         }
-        sum = add_modes(sum, light, COSINE[a], WEIGHT[a]);
+        sum = add_modes(sum, light, order.azimuths[a].x, order.azimuths[a].y);
     }
     store(at, k, sum);
 }
 
 // The coded sources of the order before, between rows of altitude and of view.
-fn source_between(place: vec4<f32>, row: vec4<f32>, k: u32, channel: u32) -> vec4<f32> {
+fn source_between(z: f32, row: vec4<f32>, k: u32, channel: u32) -> vec4<f32> {
     let low = min(u32(row.x), ORDERS_ALTITUDES - 2u);
-    let z = orders_view_z(place.z) * f32(ORDERS_VIEWS - 1u);
     let near = min(u32(z), ORDERS_VIEWS - 2u);
-    let at = (((((order.x - 1u) * ORDERS_ALTITUDES + low) * ORDERS_VIEWS + near) * ORDERS_SUNS) + k) * 3u + channel;
+    let at = (((((order.numbers.x - 1u) * ORDERS_ALTITUDES + low) * ORDERS_VIEWS + near) * ORDERS_SUNS) + k) * 3u + channel;
     let view = ORDERS_SUNS * 3u;
     let altitude = ORDERS_VIEWS * view;
     let f = z - f32(near);
@@ -111,13 +112,14 @@ fn next(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_index) k
         let place = plan[step];
         let row = plan[step + 1u];
         let arrives = plan[step + 2u].rgb;
+        let z = orders_view_z(place.z) * f32(ORDERS_VIEWS - 1u);
         workgroupBarrier();
-        red[k] = source_between(place, row, k, 0u);
-        green[k] = source_between(place, row, k, 1u);
-        blue[k] = source_between(place, row, k, 2u);
+        red[k] = source_between(z, row, k, 0u);
+        green[k] = source_between(z, row, k, 1u);
+        blue[k] = source_between(z, row, k, 2u);
         workgroupBarrier();
         for (var a = 0u; a < AZIMUTHS; a++) {
-            let turn = across * COSINE[a] + mu * head.x;
+            let turn = across * order.azimuths[a].x + mu * head.x;
             let mu_s = clamp(place.x * mu + place.y * turn, -1.0, 1.0);
             let x = orders_sun_x(air, row.yz, mu_s) * f32(ORDERS_SUNS - 1u);
             let low = min(u32(x), ORDERS_SUNS - 2u);
@@ -128,17 +130,17 @@ fn next(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_index) k
                 orders_decode(mix(green[low], green[low + 1u], f), azimuth),
                 orders_decode(mix(blue[low], blue[low + 1u], f), azimuth),
             );
-            sum = add_modes(sum, arrives * source, COSINE[a], WEIGHT[a]);
+            sum = add_modes(sum, arrives * source, order.azimuths[a].x, order.azimuths[a].y);
         }
     }
     if max(max(ground.r, ground.g), ground.b) > 0.0 {
         for (var a = 0u; a < AZIMUTHS; a++) {
-            let turn = across * COSINE[a] + mu * head.x;
+            let turn = across * order.azimuths[a].x + mu * head.x;
             let x = orders_sun_x(air, vec2<f32>(0.0, 1.0), clamp(head.y * mu + head.z * turn, -1.0, 1.0)) * f32(ORDERS_SUNS - 1u);
             let low = min(u32(x), ORDERS_SUNS - 2u);
-            let at_ground = (order.x - 1u) * ORDERS_ALTITUDES * ORDERS_SUNS + low;
+            let at_ground = (order.numbers.x - 1u) * ORDERS_ALTITUDES * ORDERS_SUNS + low;
             let root = mix(irradiance[at_ground].rgb, irradiance[at_ground + 1u].rgb, x - f32(low));
-            sum = add_modes(sum, ground * root * root * root * root, COSINE[a], WEIGHT[a]);
+            sum = add_modes(sum, ground * root * root * root * root, order.azimuths[a].x, order.azimuths[a].y);
         }
     }
     store(at, k, sum);
@@ -171,7 +173,7 @@ fn turn(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_index) k
         sharp.blue += plan[full + d * 3u + 2u] * light.blue;
         lit += plan[(at.y * PLAN_DIRECTIONS + d) * PLAN_PATH].w * vec3<f32>(light.red.x, light.green.x, light.blue.x);
     }
-    let to = (((order.x * ORDERS_ALTITUDES + at.y) * ORDERS_VIEWS + at.x) * ORDERS_SUNS + k) * 3u;
+    let to = (((order.numbers.x * ORDERS_ALTITUDES + at.y) * ORDERS_VIEWS + at.x) * ORDERS_SUNS + k) * 3u;
     sources[to] = orders_encode(sum.red);
     sources[to + 1u] = orders_encode(sum.green);
     sources[to + 2u] = orders_encode(sum.blue);
@@ -179,9 +181,9 @@ fn turn(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_index) k
     drawn[to + 1u] = orders_encode(sharp.green);
     drawn[to + 2u] = orders_encode(sharp.blue);
     if at.x == 0u {
-        if order.x == 0u {
+        if order.numbers.x == 0u {
             irradiance[(PLAN_MAX_ORDERS * ORDERS_ALTITUDES + at.y) * ORDERS_SUNS + k] = vec4<f32>(aureole(at.y, sun_mu(at.y, k)), 0.0);
         }
-        irradiance[(order.x * ORDERS_ALTITUDES + at.y) * ORDERS_SUNS + k] = vec4<f32>(sqrt(sqrt(max(lit, vec3<f32>(0.0)))), 0.0);
+        irradiance[(order.numbers.x * ORDERS_ALTITUDES + at.y) * ORDERS_SUNS + k] = vec4<f32>(sqrt(sqrt(max(lit, vec3<f32>(0.0)))), 0.0);
     }
 }

@@ -86,12 +86,12 @@ fn published_rays_of_all_orders() {
             if name == "earth" { format!("{from} {}", if low <= 85.0 { 85.0 } else { low }) } else { name.to_owned() }
         });
     }
-    errors.hold("ground 85", 0.23, 0.51);
-    errors.hold("ground 90", 0.34, 0.58);
-    errors.hold("ground 94", 0.13, 0.17);
-    errors.hold("space 85", 0.19, 0.4);
+    errors.hold("ground 85", 0.17, 0.32);
+    errors.hold("ground 90", 0.22, 0.37);
+    errors.hold("ground 94", 0.1, 0.15);
+    errors.hold("space 85", 0.17, 0.36);
     errors.hold("thin", 0.05, 0.12);
-    errors.hold("thick", 0.36, 0.92);
+    errors.hold("thick", 0.32, 0.77);
 }
 
 #[test]
@@ -115,32 +115,37 @@ fn rays_through_other_planets_of_all_orders() {
             if name == "earth" { format!("earth {} {light}", if space { "space" } else { "air" }) } else { name.to_owned() }
         });
     }
-    errors.hold("earth air day", 0.18, 0.48);
-    errors.hold("earth air dusk", 0.15, 0.37);
-    errors.hold("earth air night", 1.02, 2.42);
-    errors.hold("earth space day", 0.19, 0.68);
-    errors.hold("earth space dusk", 0.14, 0.3);
-    errors.hold("thick", 0.48, 1.83);
-    errors.hold("hazy", 0.58, 2.5);
-    errors.hold("dusty", 1.49, 7.4);
-    errors.hold("small", 0.28, 1.35);
+    errors.hold("earth air day", 0.14, 0.37);
+    errors.hold("earth air dusk", 0.15, 0.4);
+    errors.hold("earth air night", 1.04, 2.45);
+    errors.hold("earth space day", 0.17, 0.67);
+    errors.hold("earth space dusk", 0.12, 0.31);
+    errors.hold("thick", 0.51, 2.31);
+    errors.hold("hazy", 0.5, 2.2);
+    errors.hold("dusty", 1.28, 6.75);
+    errors.hold("small", 0.26, 0.95);
 }
 
-/// Airs unlike those that the tables were made with: most of the altitudes empty, an edge, a sharp lobe in much haze.
+/// Airs unlike those that the tables were made with: most of the altitudes empty, an edge, a sharp lobe in much haze and in dust, a layer of dust aloft.
 #[test]
 fn rays_through_airs_of_another_kind() {
     let gpu = tests::gpu();
     let mut errors = Errors::default();
-    for name in ["tall", "step", "haze"] {
+    for name in ["tall", "step", "haze", "aloft", "dust"] {
         let truths: Vec<Truth> = read(OTHER).into_iter().filter(|t| t.planet == name).collect();
         errors.add(&gpu, name, &truths, |t| format!("{name} {}", if sun_zenith_deg(&t.id) <= 85.0 { "day" } else { "dusk" }));
     }
-    errors.hold("tall day", 0.41, 1.25);
-    errors.hold("tall dusk", 0.75, 2.06);
-    errors.hold("step day", 0.62, 3.16);
-    errors.hold("step dusk", 4.64, 17.4);
-    errors.hold("haze day", 1.69, 8.6);
-    errors.hold("haze dusk", 2.96, 16.5);
+    errors.hold("tall day", 0.38, 1.23);
+    errors.hold("tall dusk", 0.81, 2.69);
+    errors.hold("step day", 0.6, 3.17);
+    errors.hold("step dusk", 5.2, 19.9);
+    errors.hold("haze day", 1.11, 6.06);
+    errors.hold("haze dusk", 1.16, 6.06);
+    errors.hold("aloft day", 0.59, 1.89);
+    errors.hold("aloft dusk", 1.5, 4.75);
+    errors.hold("dust day", 1.26, 3.76);
+    // Two rays: sunlight that dust has turned a little is taken to go straight on, where in truth it leaves the air or meets more of it.
+    errors.hold("dust dusk", 12.0, 17.6);
 }
 
 /// The irradiance table at an altitude, under a sun of zenith cosine `mu_s`, as `air_sky_irradiance` asks it.

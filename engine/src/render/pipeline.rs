@@ -260,6 +260,18 @@ pub fn compute_pipeline(
     groups: &[&wgpu::BindGroupLayout],
     entry: &str,
 ) -> wgpu::ComputePipeline {
+    compute_pipeline_with(gpu, label, module, groups, entry, &[])
+}
+
+/// The same with values of `override` constants.
+pub fn compute_pipeline_with(
+    gpu: &Gpu,
+    label: &str,
+    module: &wgpu::ShaderModule,
+    groups: &[&wgpu::BindGroupLayout],
+    entry: &str,
+    constants: &[(&str, f64)],
+) -> wgpu::ComputePipeline {
     let groups: Vec<_> = groups.iter().map(|g| Some(*g)).collect();
     let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: Some(label),
@@ -271,7 +283,7 @@ pub fn compute_pipeline(
         layout: Some(&layout),
         module,
         entry_point: Some(entry),
-        compilation_options: wgpu::PipelineCompilationOptions::default(),
+        compilation_options: wgpu::PipelineCompilationOptions { constants, ..Default::default() },
         cache: None,
     })
 }

@@ -88,8 +88,8 @@ impl Classes {
     }
 }
 
-/// Vertical depth of scattering beyond which a march heeds the bends of a tent.
-const OPAQUE: f64 = 3.0;
+/// Vertical depth of scattering beyond which a march heeds the bends of a tent: a panel laid across them errs by a twentieth of that depth.
+const SEEN: f64 = 0.02;
 
 /// Optical depth of scattering from the datum to the top, mean of the channels.
 fn vertical_depth(layer: &Layer, top_m: f64) -> f64 {
@@ -114,16 +114,16 @@ impl Medium {
         self.edges_m(most, f64::INFINITY)
     }
 
-    /// The same with the bends of tents so deep that one sees no farther than into their edges.
+    /// The same with the bends of tents deep enough to be seen.
     pub fn cuts_m(&self, most: usize) -> Vec<f64> {
-        self.edges_m(most, OPAQUE)
+        self.edges_m(most, SEEN)
     }
 
-    fn edges_m(&self, most: usize, opaque: f64) -> Vec<f64> {
+    fn edges_m(&self, most: usize, seen: f64) -> Vec<f64> {
         let mut all: Vec<(f64, f64)> = Vec::new();
         for layer in &self.layers {
             let strength = f64::from((layer.scattering_per_m + layer.absorption_per_m).max_element());
-            let bends = matches!(layer.profile, Profile::Tent { .. }) && vertical_depth(layer, self.top_altitude_m) > opaque;
+            let bends = matches!(layer.profile, Profile::Tent { .. }) && vertical_depth(layer, self.top_altitude_m) > seen;
             let peak = layer.profile.breaks_m().into_iter().map(|h| layer.profile.density(h)).fold(0.0, f64::max);
             for h in layer.profile.breaks_m().into_iter().filter(|h| *h > 0.0 && *h < self.top_altitude_m) {
                 // A table's steep rise within a few metres is a jump to a march as well.
@@ -204,12 +204,12 @@ mod tests {
         let jumps = medium.jumps_m(8);
         assert!(jumps.len() == 3 && jumps[..2] == [2000.0, 2500.0] && (jumps[2] - 5000.5).abs() < 1.0, "{jumps:?}");
         assert_eq!(medium.jumps_m(1).len(), 1);
-        // A deep cloud's bends are cuts too.
+        // The bends of dust aloft are cuts too; those of a breath of it are not worth it.
         medium.layers.truncate(1);
         medium.layers[0].profile = Profile::Tent { bottom_m: 2000.0, peak_m: 3000.0, top_m: 4000.0 };
-        medium.layers[0].scattering_per_m = Vec3::splat(1e-3);
+        medium.layers[0].scattering_per_m = Vec3::splat(1e-5);
         assert_eq!(medium.cuts_m(8), Vec::<f64>::new());
-        medium.layers[0].scattering_per_m = Vec3::splat(1e-2);
+        medium.layers[0].scattering_per_m = Vec3::splat(3e-5);
         assert_eq!((medium.cuts_m(8), medium.jumps_m(8)), (vec![2000.0, 3000.0, 4000.0], Vec::new()));
     }
 }

@@ -21,7 +21,7 @@ const PARTS: usize = 96;
 /// What a change of the mean cosine of scattering by one weighs; what all of a deep air's matter weighs. The root of the altitude weighs 1.
 const TURNING: f64 = 0.8;
 /// See [`TURNING`].
-const MATTER: f64 = 0.6;
+const MATTER: f64 = 2.0;
 /// What the logarithm of transport depth from the ground up weighs in deep air, and from which depth on.
 const GROUND: f64 = 0.8;
 /// See [`GROUND`].

@@ -36,8 +36,10 @@ pub use super::sun_map::SunMap;
 pub const SUNS: usize = 32;
 /// Altitudes in a table: [`Levels`].
 pub const ALTITUDES: usize = 16;
-/// Zenith cosines of the view in a table, nearly even in the angle.
+/// Zenith cosines of the view in a table: densest at the level, about which horizons lie and a peak's light changes most.
 pub const VIEWS: usize = 20;
+/// How far the first views lie from the level: tan(e/2) of the angle e by the coordinate there.
+const NEAR: f64 = 0.6;
 /// Directions from an altitude that leave the air, and that meet the ground.
 pub const UP: usize = 12;
 /// See [`UP`].
@@ -46,6 +48,8 @@ pub const DOWN: usize = 8;
 pub const DIRECTIONS: usize = UP + DOWN;
 /// Steps along a direction.
 pub const STEPS: usize = 16;
+/// See [`peaked`].
+const PEAKED: f64 = 0.01;
 /// Degree to which the sum over the directions from an altitude is exact.
 const EXACT: usize = 8;
 /// Fourier modes in the azimuth.
@@ -76,6 +80,8 @@ pub struct Plan {
     pub rows: Vec<[f32; 4]>,
     /// Orders to compute before they are combined; 0: none, and nothing of what they need is in the rows.
     pub orders: u32,
+    /// Whether forward peaks turn so much light that azimuths must lie close.
+    pub peaked: bool,
     /// Row at which the solution of deep air begins.
     pub deep: Option<u32>,
 }
@@ -101,7 +107,7 @@ impl Plan {
         let classes = classes(medium);
         let share = streams::share(medium, &Classes::of(medium).list);
         let levels = Levels::new(medium);
-        let mut plan = Self { rows: Vec::new(), orders: 0, deep: None };
+        let mut plan = Self { rows: Vec::new(), orders: 0, peaked: peaked(medium, &classes), deep: None };
         if share.min_element() < 1.0 {
             plan.orders = orders(medium, share);
             plan.rows = rows(medium, &classes, &levels);
@@ -150,6 +156,18 @@ fn orders(medium: &Medium, deep: DVec3) -> u32 {
     }
     let depth = (0..3).filter(|c| deep[*c] < 1.0).map(|c| depth[c]).fold(0.0, f64::max);
     [(0.5, 4), (3.0, 5), (8.0, 6)].into_iter().find(|(limit, _)| depth < *limit).map_or(MAX_ORDERS, |(_, n)| n)
+}
+
+/// Whether forward peaks scatter more than [`PEAKED`] of the light that crosses the air straight down.
+fn peaked(medium: &Medium, classes: &[(Class, Truncated)]) -> bool {
+    const PARTS: i32 = 64;
+    let of_part = |i: i32| {
+        let x = (f64::from(i) + 0.5) / f64::from(PARTS);
+        let width = 2.0 * x / f64::from(PARTS) * medium.top_altitude_m;
+        let scattered = |class: &Class| class.scattering(medium, x * x * medium.top_altitude_m).max_element();
+        classes.iter().map(|(class, cut)| scattered(class) * cut.share * width).sum::<f64>()
+    };
+    (0..PARTS).map(of_part).sum::<f64>() > PEAKED
 }
 
 /// Nodes and weights of Gauss–Legendre quadrature on [0, 1].
@@ -239,7 +257,9 @@ pub(super) fn row3(v: DVec3, w: f64) -> [f32; 4] {
 /// Zenith cosine of a table's view.
 pub fn view_cosine(view: usize) -> f64 {
     let x = 2.0 * view as f64 / (VIEWS - 1) as f64 - 1.0;
-    x.signum() * (1.0 - (1.0 - x.abs()) * (1.0 - x.abs()))
+    // tan(e/2) of the angle e from the level.
+    let t = x * (NEAR + (1.0 - NEAR) * x.abs());
+    2.0 * t / (1.0 + t * t)
 }
 
 /// Normalised Legendre functions of order 0 at a cosine, degree 0 to [`EXACT`].

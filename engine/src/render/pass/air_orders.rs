@@ -7,7 +7,9 @@ use crate::air::model::orders::{ALTITUDES, DIRECTIONS, MAX_ORDERS, Plan, SUNS, V
 use crate::gpu::texture::Texture;
 use crate::gpu::{Gpu, ShaderLibrary};
 use crate::render::RenderError;
-use crate::render::pipeline::{compute_pipeline, loaded_entry, sampler_entry, stored_texture_entry, texture_entry, uniform_entry};
+use crate::render::pipeline::{
+    compute_pipeline, compute_pipeline_with, loaded_entry, sampler_entry, stored_texture_entry, texture_entry, uniform_entry,
+};
 use crate::render::targets::HDR;
 use crate::scene::gpu_data::MAX_AIRS;
 use wgpu::util::DeviceExt as _;
@@ -20,15 +22,55 @@ const SIZE: wgpu::Extent3d =
 /// Texels of the irradiance table of one air.
 #[allow(clippy::cast_possible_truncation)]
 pub const IRRADIANCE_SIZE: [u32; 2] = [SUNS as u32, ALTITUDES as u32];
+/// Azimuths of half a circle: cosine and weight. Denser towards the sun, where hazes glow: π x^1.4 of the middles x of eight even parts; the
+/// weights make sums of cos mφ exact to m = 6, so for the product of any two modes. For air with peaks sixteen: π x^1.6, exact to m = 10.
+const AZIMUTHS: [&[[f32; 2]]; 2] = [
+    &[
+        [0.9979031, 0.0546360],
+        [0.9548789, 0.0871416],
+        [0.8159015, 0.1110116],
+        [0.5508123, 0.1258185],
+        [0.1661697, 0.1384601],
+        [-0.2844450, 0.1513303],
+        [-0.7020766, 0.1603134],
+        [-0.9633941, 0.1712886],
+    ],
+    &[
+        [0.9999247, 0.0122240],
+        [0.9974684, 0.0236741],
+        [0.9870415, 0.0323824],
+        [0.9621259, 0.0400605],
+        [0.9160170, 0.0469294],
+        [0.8424219, 0.0528056],
+        [0.7361755, 0.0580781],
+        [0.5940880, 0.0634615],
+        [0.4158671, 0.0685568],
+        [0.2050141, 0.0730118],
+        [-0.0304550, 0.0777095],
+        [-0.2776493, 0.0820819],
+        [-0.5190016, 0.0860973],
+        [-0.7332069, 0.0905057],
+        [-0.8970209, 0.0940060],
+        [-0.9879186, 0.0984154],
+    ],
+];
 /// Bytes of three vectors per sun.
 const SUN_ROWS: u64 = (SUNS * 3 * 16) as u64;
+
+/// `Order` of the shader.
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct OrderUniform {
+    numbers: [u32; 4],
+    azimuths: [[f32; 4]; 16],
+}
 
 /// Pipelines, the table, and the room to work in.
 pub struct OrdersBaker {
     layout: wgpu::BindGroupLayout,
     sum_layout: wgpu::BindGroupLayout,
-    first: wgpu::ComputePipeline,
-    next: wgpu::ComputePipeline,
+    /// `first` and `next`, over azimuths as most airs need them and as those with peaks do.
+    gather: [[wgpu::ComputePipeline; 2]; 2],
     turn: wgpu::ComputePipeline,
     products: wgpu::ComputePipeline,
     sum: wgpu::ComputePipeline,
@@ -97,8 +139,10 @@ impl OrdersBaker {
         };
         let (altitudes, orders) = (ALTITUDES as u64, u64::from(MAX_ORDERS));
         Ok(Self {
-            first: compute_pipeline(gpu, "air_orders", &module, &[&each], "first"),
-            next: compute_pipeline(gpu, "air_orders", &module, &[&each], "next"),
+            gather: AZIMUTHS.map(|azimuths| {
+                let constants = [("AZIMUTHS", azimuths.len() as f64)];
+                ["first", "next"].map(|entry| compute_pipeline_with(gpu, "air_orders", &module, &[&each], entry, &constants))
+            }),
             turn: compute_pipeline(gpu, "air_orders", &module, &[&each], "turn"),
             products: compute_pipeline(gpu, "air_orders_sum", &sum_module, &[&all], "products"),
             sum: compute_pipeline(gpu, "air_orders_sum", &sum_module, &[&all], "sum"),
@@ -143,11 +187,15 @@ impl OrdersBaker {
         };
         let orders = if plan.orders > 0 { plan.orders.clamp(2, MAX_ORDERS) } else { 0 };
         let deep = plan.deep.unwrap_or(0);
+        let [first, next] = &self.gather[usize::from(plan.peaked)];
+        let azimuths = AZIMUTHS[usize::from(plan.peaked)];
         let is_deep = u32::from(plan.deep.is_some());
         let plan = buffer(bytemuck::cast_slice(&plan.rows), BufferUsages::STORAGE);
         let (directions, views, altitudes) = (DIRECTIONS as u32, VIEWS as u32, ALTITUDES as u32);
         for order in 0..orders {
-            let number = buffer(bytemuck::bytes_of(&[order, orders, inputs.slot, 0]), BufferUsages::UNIFORM);
+            let mut numbers = OrderUniform { numbers: [order, orders, inputs.slot, 0], azimuths: [[0.0; 4]; 16] };
+            numbers.azimuths.iter_mut().zip(azimuths).for_each(|(to, [cosine, weight])| *to = [*cosine, *weight, 0.0, 0.0]);
+            let number = buffer(bytemuck::bytes_of(&numbers), BufferUsages::UNIFORM);
             let group = bind(
                 gpu,
                 &self.layout,
@@ -165,7 +213,7 @@ impl OrdersBaker {
                 ],
             );
             pass.set_bind_group(0, &group, &[]);
-            pass.set_pipeline(if order == 0 { &self.first } else { &self.next });
+            pass.set_pipeline(if order == 0 { first } else { next });
             pass.dispatch_workgroups(directions, altitudes, 1);
             pass.set_pipeline(&self.turn);
             pass.dispatch_workgroups(views, altitudes, 1);
@@ -207,4 +255,19 @@ const fn buffer_entry(binding: u32, ty: wgpu::BufferBindingType) -> wgpu::BindGr
 fn bind<const N: usize>(gpu: &Gpu, layout: &wgpu::BindGroupLayout, resources: [(u32, BindingResource<'_>); N]) -> wgpu::BindGroup {
     let entries = resources.map(|(binding, resource)| BindGroupEntry { binding, resource });
     gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("air orders"), layout, entries: &entries })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sums_over_azimuths_are_exact() {
+        for (azimuths, exact) in AZIMUTHS.into_iter().zip([6, 10]) {
+            for m in 0..=exact {
+                let sum: f64 = azimuths.iter().map(|[c, w]| f64::from(*w) * libm::cos(f64::from(m) * libm::acos(f64::from(*c)))).sum();
+                assert!((sum - if m == 0 { 1.0 } else { 0.0 }).abs() < 2e-6, "cos {m}φ of {}: {sum}", azimuths.len());
+            }
+        }
+    }
 }
