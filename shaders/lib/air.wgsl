@@ -8,7 +8,7 @@
 #include "lib/air_orders.wgsl"
 #include "lib/air_quadrature.wgsl"
 
-const TRANSMITTANCE_SIZE: vec2<f32> = vec2<f32>(256.0, 64.0);
+const TRANSMITTANCE_SIZE: vec2<f32> = vec2<f32>(128.0, 128.0);
 const IRRADIANCE_SIZE: vec2<f32> = vec2<f32>(32.0, 16.0);  // ORDERS_SUNS, ORDERS_ALTITUDES
 
 // 0…1 to the centres of the first and last texel, and back.
@@ -45,16 +45,26 @@ fn transmittance_point(air: Air, x: vec2<f32>) -> vec3<f32> {
     return vec3<f32>(h, select(clamp(mu, -1.0, 1.0), 1.0, reach < 1e-3), reach);
 }
 
+// The table holds what its fourth root lacks to 1. It falls by e^n from row to row where depth grows by n: in between, what is found of fourth roots errs
+// by a quarter of what is found of itself, and half floats near 0 tell it apart as finely as ever where little is lost.
+fn transmittance_encode(t: vec4<f32>) -> vec4<f32> {
+    return 1.0 - sqrt(sqrt(t));
+}
+fn transmittance_decode(code: vec4<f32>) -> vec4<f32> {
+    let root = 1.0 - code;
+    return (root * root) * (root * root);
+}
+
 // Transmittance from a point to the top of the air towards the sun; below the horizon: that of the horizon.
 fn air_sun_transmittance(air: Air, table: texture_2d_array<f32>, linear: sampler, slot: i32, altitude: f32, mu_s: f32) -> vec3<f32> {
     let uv = table_uv(transmittance_x(air, altitude, mu_s), TRANSMITTANCE_SIZE);
-    return textureSampleLevel(table, linear, uv, 2 * slot, 0.0).rgb;
+    return transmittance_decode(textureSampleLevel(table, linear, uv, 2 * slot, 0.0)).rgb;
 }
 // The same of the beam, which has the light that scattering left going straight on (layer 2 slot + 1); a: which part of it was never
 // scattered. Of layer 2 slot: that part alone.
 fn air_sun_beam(air: Air, table: texture_2d_array<f32>, linear: sampler, layer: i32, altitude: f32, mu_s: f32) -> vec4<f32> {
     let uv = table_uv(transmittance_x(air, altitude, mu_s), TRANSMITTANCE_SIZE);
-    return textureSampleLevel(table, linear, uv, layer, 0.0);
+    return transmittance_decode(textureSampleLevel(table, linear, uv, layer, 0.0));
 }
 
 // Illuminance by the sky on horizontal ground, per unit of the sun's illuminance above the air. On a slope whose normal makes

@@ -22,8 +22,9 @@ fn square(v: vec3<f32>) -> vec3<f32> {
 fn bake(@builtin(global_invocation_id) id: vec3<u32>) {
     let at = id.xy;
     if all(vec2<f32>(at) < TRANSMITTANCE_SIZE) {
-        let light = mixed(textureLoad(one_transmittance, at, 0, 0).rgb, textureLoad(other_transmittance, at, 0, 0).rgb);
-        textureStore(transmittance, at, vec4<f32>(light, 1.0));
+        let one = transmittance_decode(textureLoad(one_transmittance, at, 0, 0)).rgb;
+        let other = transmittance_decode(textureLoad(other_transmittance, at, 0, 0)).rgb;
+        textureStore(transmittance, at, transmittance_encode(vec4<f32>(mixed(one, other), 1.0)));
     }
     // Of fourth roots.
     if all(vec2<f32>(at) < IRRADIANCE_SIZE) {

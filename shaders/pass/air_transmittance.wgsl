@@ -18,6 +18,6 @@ fn bake(@builtin(global_invocation_id) id: vec3<u32>) {
     path.altitude = point.x;
     path.slope = path.radius * point.y;
     let depth = air_optical_depths(air, media, 0, path, point.z, 8u);
-    textureStore(table, id.xy, 0, vec4<f32>(exp(-depth[0]), 1.0));
-    textureStore(table, id.xy, 1, vec4<f32>(exp(depth[1] - depth[0]), exp(-depth[1].g)));
+    textureStore(table, id.xy, 0, transmittance_encode(vec4<f32>(exp(-depth[0]), 1.0)));
+    textureStore(table, id.xy, 1, transmittance_encode(vec4<f32>(exp(depth[1] - depth[0]), exp(-depth[1].g))));
 }

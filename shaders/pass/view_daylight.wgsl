@@ -18,12 +18,13 @@ fn bake(@builtin(global_invocation_id) id: vec3<u32>) {
     let sun = textureDimensions(transmittance);
     if all(id.xy < sun) {
         let point = transmittance_point(air, table_x(id.xy, vec2<f32>(sun)));
-        textureStore(transmittance, id.xy, vec4<f32>(exp(-view_depth(air, vt, depth, point.x, point.y)), 1.0));
+        let through = exp(-view_depth(air, vt, depth, point.x, point.y));
+        textureStore(transmittance, id.xy, transmittance_encode(vec4<f32>(through, 1.0)));
     }
     let sky = textureDimensions(irradiance);
     if all(id.xy < sky) {
         let at = table_x(id.xy, vec2<f32>(sky));
-        let mu_s = orders_sun_mu(air, horizon_dip(air.shape.x, at.y * at.y * air.shape.y), at.x);
+        let mu_s = orders_sun_mu(air, horizon_dip(air.shape.x, orders_altitude(air, id.y)), at.x);
         let size = f32(textureDimensions(ambient).x);
         let x = (space_sun_x(vt.counts.w > 0u, mu_s) * (size - 1.0) + 0.5) / size;
         // Its square roots become the fourth roots of that table.

@@ -2,7 +2,8 @@
 //!
 //! The source function changes with altitude as the sight of the ground does (by the root of the altitude), as scattering matter lies above and below, and as
 //! matter of one phase function takes the place of another. Levels lie evenly in a sum of the three, up to where matter counts no longer; where
-//! density jumps one lies close on either side. In deep air light falls to the ground within few free paths of it: there more of them lie.
+//! density jumps one lies close on either side. In deep air light falls to the ground within few free paths of it, and the sun's dies away in as many below the
+//! top: there more of them lie. Below those it comes from all sides, and what turns it matters less.
 
 use super::orders::ALTITUDES;
 use super::streams::share;
@@ -24,6 +25,10 @@ const TURNING: f64 = 0.8;
 const MATTER: f64 = 2.0;
 /// What the logarithm of transport depth from the ground up weighs in deep air, and from which depth on.
 const GROUND: f64 = 0.8;
+/// What that from the sky down weighs in the deepest air, and the transport depth from which on it tells.
+const SKY: f64 = 0.8;
+/// See [`SKY`].
+const FAR: f64 = 8.0;
 /// See [`GROUND`].
 const SKIN: f64 = 0.3;
 
@@ -67,13 +72,15 @@ impl Levels {
         let edges = core::iter::once(0.0).chain(jumps.iter().flat_map(|x| [x - close(*x), x + close(*x)])).chain([end]);
         let edges: Vec<f64> = edges.collect();
         let depth: f64 = edges.chunks_exact(2).map(|e| parts(e[0], e[1]).map(|(x, w)| at(x)[0] * 2.0 * x * top_m * w).sum::<f64>()).sum();
-        let by_matter = MATTER / (1.0 + depth);
         let turned = |x: f64, w: f64| {
             let [mean, _, cosine] = at(x);
             if cosine.is_finite() { mean * (1.0 - cosine) * 2.0 * x * top_m * w } else { 0.0 }
         };
         let deep: f64 = edges.chunks_exact(2).map(|e| parts(e[0], e[1]).map(|(x, w)| turned(x, w)).sum::<f64>()).sum();
+        // Below many free paths light is even, whatever matter lies there.
+        let by_matter = MATTER / ((1.0 + depth) * (1.0 + deep));
         let by_ground = GROUND * share(medium, &Classes::of(medium).list).max_element() / libm::log1p(deep / SKIN).max(1e-9);
+        let by_sky = SKY * deep / (FAR + deep) / libm::log1p(deep / SKIN).max(1e-9);
         let mut below = 0.0;
         let stretches: Vec<Vec<f64>> = edges
             .chunks_exact(2)
@@ -84,9 +91,10 @@ impl Levels {
                     let change = if (cosine - last).is_finite() { (cosine - last).abs() } else { 0.0 };
                     last = if cosine.is_finite() { cosine } else { last };
                     let here = turned(x, w);
-                    let nearer = libm::log1p(here / (SKIN + below));
+                    let above = (deep - below - here).max(0.0);
+                    let nearer = by_ground * libm::log1p(here / (SKIN + below)) + by_sky * libm::log1p(here / (SKIN + above));
                     below += here;
-                    sum += w / end + by_matter * mean * 2.0 * x * top_m * w + TURNING * change + by_ground * nearer;
+                    sum += w / end + by_matter * mean * 2.0 * x * top_m * w + TURNING * change / (1.0 + above) + nearer;
                     sum
                 };
                 core::iter::once(0.0).chain(parts(e[0], e[1]).map(one).collect::<Vec<_>>()).collect()
@@ -232,6 +240,24 @@ mod tests {
         let levels = Levels::new(&medium);
         rises(&levels);
         assert!((levels.altitude_m(ALTITUDES - 1) - 7994.0).abs() < 1.0, "{levels:?}");
+    }
+
+    #[test]
+    fn a_deep_cloud_has_rows_where_sunlight_dies_away() {
+        // As on Venus: 28 deep, from 46 to 74 km, in air of 40 more.
+        let mut medium = earth();
+        medium.top_altitude_m = 2e5;
+        medium.layers.truncate(2);
+        medium.layers[0].scattering_per_m = Vec3::new(0.18, 0.41, 1.0) * (40.0 / 15860.0);
+        medium.layers[0].profile = Profile::Exponential { scale_height_m: 15860.0 };
+        medium.layers[1].scattering_per_m = Vec3::splat(28.0 / 14e3);
+        medium.layers[1].phase = Phase::HenyeyGreenstein { g: 0.74 };
+        medium.layers[1].profile = Profile::Tent { bottom_m: 46e3, peak_m: 56e3, top_m: 74e3 };
+        let levels = Levels::new(&medium);
+        rises(&levels);
+        // From optical depth 0.3 to 12 as seen from above.
+        let held = (0..ALTITUDES).filter(|row| (59.5e3..72.5e3).contains(&levels.altitude_m(*row))).count();
+        assert!(held >= 2, "{levels:?}");
     }
 
     #[test]

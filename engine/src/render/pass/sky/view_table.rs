@@ -25,7 +25,7 @@ use wgpu::{BindGroupEntry, BindGroupLayoutEntry, BindingResource, TextureFormat,
 /// Bodies whose tables are kept while others are drawn: a full table has 128 MiB.
 const KEPT: usize = 4;
 /// Texels of the transmittance table that [`Painter::light_ground`] writes; irradiance has fewer.
-const SUNLIGHT_SIZE: [u32; 2] = [256, 64];
+const SUNLIGHT_SIZE: [u32; 2] = [128, 128];
 
 /// A bake: its pipeline and the layout of its one group.
 struct Bake {
