@@ -10,7 +10,7 @@ use crate::space::relative::narrow;
 use core::f64::consts::PI;
 
 /// Half width of a peak that is cut off, rad.
-pub(super) const EDGE: f64 = 0.12;
+pub(super) const EDGE: f64 = 0.15;
 /// A smaller share is left where it is.
 const LEAST: f64 = 0.01;
 /// Degree at which the series of a blurred phase function ends: twice blurred, a peak 0.01 rad wide is below 1e-2 there.

@@ -24,7 +24,7 @@ use crate::render::pass::air_tables::{AirBaker, is_bare};
 use crate::render::pipeline::{PipelineKind, depth_entry, storage_entry, texture_entry};
 use crate::render::report::AirReport;
 use crate::render::shared::{FrameContext, Mirror, Shared};
-use crate::render::targets::HDR;
+use crate::render::targets::{HDR, SKY_LEVEL};
 use crate::scene::gpu_data::{MAX_AIRS, SkySettings, SkyUniform};
 use crate::scene::{Body, Snapshot, Surface};
 use bytemuck::Zeroable;
@@ -349,7 +349,7 @@ impl Sky {
         let kind = painter.kind();
         let groups = [&f.shared.frame_layout, &f.shared.light_layout, &self.picture, &kind.own_layout];
         let pipeline = kind.front.get_or_init(|| {
-            PipelineKind { entry: "front", colours: 2, ..PipelineKind::full_screen("sky", &kind.module, &groups, HDR) }.make(f.gpu)
+            PipelineKind { entry: "front", colours: 2, ..PipelineKind::full_screen("sky", &kind.module, &groups, SKY_LEVEL) }.make(f.gpu)
         });
         let rect = choice.rect.every(FRONT_RATE, f.targets.size);
         let views = f.targets.sky_at(FRONT_RATE).light.each_ref().map(|t| &t.view);

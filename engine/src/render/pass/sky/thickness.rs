@@ -10,7 +10,7 @@ use crate::air::{Air, Model};
 use crate::gpu::Gpu;
 use crate::gpu::texture::Texture;
 use crate::render::RenderError;
-use crate::render::pipeline::{PipelineKind, texture_entry};
+use crate::render::pipeline::{PipelineKind, loaded_entry};
 use crate::render::shared::FrameContext;
 use crate::render::targets::HDR;
 use crate::scene::gpu_data::{SkySettings, vec4};
@@ -20,7 +20,7 @@ use wgpu::{BindGroupEntry, BindingResource};
 
 /// Compiles it.
 pub fn make(parts: &Parts<'_>) -> Result<Box<dyn Painter>, RenderError> {
-    let kind = PainterKind::new(parts, "pass/sky_thickness.wgsl", &[0, 1].map(|i| texture_entry(i, wgpu::TextureViewDimension::D2)))?;
+    let kind = PainterKind::new(parts, "pass/sky_thickness.wgsl", &[0, 1].map(|i| loaded_entry(i, wgpu::TextureViewDimension::D2)))?;
     let groups = [&parts.shared.frame_layout, &parts.shared.light_layout, parts.picture, &kind.own_layout];
     let held = [0.0, 1.0].map(|lit| {
         let constants = &[("IN_AIR", lit)];
