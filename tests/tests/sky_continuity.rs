@@ -297,10 +297,14 @@ fn jump(drawn: &[Vec<f32>], at: &[f64], skipped: &dyn Fn(usize, usize) -> bool, 
             }
             for c in 0..3 {
                 let light = |k: usize| f64::from(drawn[k][4 * pixel + c]);
-                let change = |k: usize| (light(k) - light(k - 1)).abs() / light(i).max(light(i - 1)).max(FLOOR);
-                // Steps of a course need not be even: what changes evenly changes by their ratio.
-                let even = |k: usize| change(k) * ((at[i] - at[i - 1]) / (at[k] - at[k - 1])).max(1.0);
-                let jump = change(i) - even(i - 1).max(even(i + 1));
+                // Light may change evenly, or by an even share; steps of a course need not be even either.
+                let greatest = |i: usize, k: usize| light(i).max(light(k)).max(FLOOR);
+                let beyond = |share: &dyn Fn(usize) -> f64| {
+                    let change = |k: usize| (light(k) - light(k - 1)).abs() / share(k);
+                    let even = |k: usize| change(k) * ((at[i] - at[i - 1]) / (at[k] - at[k - 1])).max(1.0);
+                    change(i) - even(i - 1).max(even(i + 1))
+                };
+                let jump = beyond(&|_| greatest(i, i - 1)).min(beyond(&|k| greatest(k, k - 1)));
                 if jump > worst.0 {
                     let lights = [i - 2, i - 1, i, i + 1].map(|k| format!("{:.4e}", light(k)));
                     worst = (jump, format!("{}, channel {c}: {lights:?} sr⁻¹", place(i, pixel)));
