@@ -52,31 +52,51 @@ struct SkySpread {
     nodes: u32,        // of a Gauss–Legendre rule on each part; 1 where there is but one ray: the view itself
     below: vec2<f32>,  // part before the ground, from and to
     above: vec2<f32>,  // part above it, up to the top of the air
+    width: f32,        // angle from one edge to the other, rad
+    surface: f32,      // distance to what was drawn before it all; 1e30 where that is the planet itself, or nothing
 }
 
-const SKY_ALONE: SkySpread = SkySpread(1u, vec2<f32>(-0.5), vec2<f32>(-0.5, 0.5));
+const SKY_ALONE: SkySpread = SkySpread(1u, vec2<f32>(-0.5), vec2<f32>(-0.5, 0.5), 0.0, 1e30);
 // Parts of the air's height from which on a pixel wants two rays, and three.
 const SKY_TWO: f32 = 0.05;
 const SKY_THREE: f32 = 0.4;
 
+// Unit vector across the ray, from the planet's centre outwards.
+fn sky_outwards(body: Body, view: SkyView) -> vec3<f32> {
+    let outwards = body.up.xyz - view.ray * dot(view.ray, body.up.xyz);
+    return outwards / max(length(outwards), 1e-20);
+}
+// Angle by which a pixel reaches across its ray in a direction: the picture is a plane, on which far from its middle an angle takes more room.
+fn sky_pixel_width(frame: Frame, view: SkyView, across: vec3<f32>) -> f32 {
+    let ahead = dot(view.ray, frame.forward.xyz);
+    return view.pixel * ahead / length(across - view.ray * (dot(across, frame.forward.xyz) / ahead));
+}
+
 // From afar the air at a limb is thinner than a pixel: there, several rays stand for one. So they do along the horizon of a smooth body, whose
 // own picture fades over one pixel there. Elsewhere one does. From within the air, ground that was drawn ends the ray where it stands.
-fn sky_spread(body: Body, air: Air, view: SkyView) -> SkySpread {
+fn sky_spread(frame: Frame, body: Body, air: Air, view: SkyView) -> SkySpread {
     let path = air_path(air, body.up.xyz, body.up.w, view.ray);
-    if path.start < 0.0 || view.surface <= path.start {
+    // Of a pixel whose middle misses the air a part may not.
+    let misses = path.start < 0.0;
+    let eye = air.shape.x + body.up.w;
+    let horizon = select(path.start - path.slope, -eye * dot(body.up.xyz, view.ray), misses);
+    if view.surface <= select(path.start, 0.8 * horizon, misses) {
         return SKY_ALONE;
     }
-    let low = air_altitude(air, path, clamp(-path.slope, 0.0, path.exit));
-    let horizon = path.start - path.slope;
-    let pixel = view.pixel * max(horizon, 0.0);
+    let low = select(
+        air_altitude(air, path, clamp(-path.slope, 0.0, path.exit)), eye * length(cross(body.up.xyz, view.ray)) - air.shape.x, misses);
+    let width = sky_pixel_width(frame, view, sky_outwards(body, view));
+    let pixel = width * max(horizon, 0.0);
     let fades = body.ids.w == 0 && view.surface > 0.8 * horizon && abs(low) < pixel;
-    let thin = (path.start > 0.0 || view.datum) && pixel > SKY_TWO * air.shape.y && low < air.shape.y + pixel && low > -pixel;
-    if !fades && !thin {
+    let thin = (path.start != 0.0 || view.datum) && pixel > SKY_TWO * air.shape.y && low > -pixel;
+    if !fades && !thin || horizon <= 0.0 || low >= air.shape.y + 0.5 * pixel {
         return SKY_ALONE;
     }
+    let own = misses || air_altitude(air, path, min(view.surface - path.start, path.exit)) < 2.0 * pixel;
     let edges = clamp((vec2<f32>(0.0, air.shape.y) - low) / pixel, vec2<f32>(-0.5), vec2<f32>(0.5));
     return SkySpread(
-        1u + u32(pixel > SKY_TWO * air.shape.y) + u32(pixel > SKY_THREE * air.shape.y), vec2<f32>(-0.5, edges.x), vec2<f32>(edges.x, edges.y));
+        1u + u32(pixel > SKY_TWO * air.shape.y) + u32(pixel > SKY_THREE * air.shape.y), vec2<f32>(-0.5, edges.x), edges, width,
+        select(view.surface, 1e30, own));
 }
 
 // Whether the view itself stands for the pixel.
@@ -104,11 +124,10 @@ fn sky_across(body: Body, view: SkyView, spread: SkySpread, k: u32) -> SkyShare 
     let two = spread.nodes == 2u;
     let at = node * select(0.774596669, 1.154700538, two);
     let share = select(select(5.0 / 18.0, 4.0 / 9.0, node == 0.0), 1.0 / f32(spread.nodes), spread.nodes < 3u);
-    let aside = (mix(part.x, part.y, 0.5 + 0.5 * at)) * view.pixel;
-    let outwards = body.up.xyz - view.ray * dot(view.ray, body.up.xyz);
-    let ray = normalize(view.ray + outwards * (aside / max(length(outwards), 1e-20)));
-    // What was drawn in the pixel's middle is not what its other parts show: the datum decides, as long as the air lies before it.
-    return SkyShare(SkyView(ray, view.surface, true, view.pixel), share * (part.y - part.x));
+    let aside = mix(part.x, part.y, 0.5 + 0.5 * at) * spread.width;
+    let ray = normalize(view.ray + sky_outwards(body, view) * aside);
+    // What was drawn in the pixel's middle is not what its other parts show: there the datum decides.
+    return SkyShare(SkyView(ray, spread.surface, true, view.pixel), share * (part.y - part.x));
 }
 
 // The path of a ray of sight. Between the datum's horizon and that of ground which lies deeper, a picture from within the air has drawn nothing:
@@ -159,6 +178,14 @@ fn sky_probe_view(asked: ProbeRay) -> SkyView {
 // Light found per unit of the star's illuminance, in cd/m².
 fn in_starlight(body: Body, light: AirLight) -> AirLight {
     return AirLight(light.radiance * body.illuminance.rgb, light.transmittance);
+}
+
+// Radii in pixels of a disc that is drawn as a point below (POINT_BELOW_PX of engine/src/render/pass/smooth_body.rs), and of one that has all of its air.
+const SKY_POINT: vec2<f32> = vec2<f32>(0.75, 3.0);
+
+// A body that is a point shines by its surface alone: what its air makes of it comes in by degrees.
+fn sky_presence(frame: Frame, body: Body, air: Air) -> f32 {
+    return smoothstep(SKY_POINT.x, SKY_POINT.y, (air.shape.x + air.shape.y) / max((body.centre.w + body.up.w) * frame.up.w, 1e-30));
 }
 
 // Luminance and transmittance laid over a stored colour.

@@ -56,7 +56,8 @@ fn sky_mean(body: Body, view: SkyView, spread: SkySpread) -> AirLight {
         }
     }
     sum.transmittance += max(clear, 0.0);
-    return sum;
+    let present = sky_presence(frame, body, airs.list[u32(body.ids.z)]);
+    return AirLight(present * sum.radiance, mix(vec3<f32>(1.0), sum.transmittance, present));
 }
 
 @fragment
@@ -64,7 +65,7 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
     let pixel = vec2<u32>(in.position.xy);
     let body = bodies.list[sky.ids.x];
     let view = sky_view(frame, in.uv, textureLoad(depth, pixel, 0));
-    let light = sky_mean(body, view, sky_spread(body, airs.list[u32(body.ids.z)], view));
+    let light = sky_mean(body, view, sky_spread(frame, body, airs.list[u32(body.ids.z)], view));
     return sky_over(textureLoad(opaque, pixel, 0).rgb, light, exposure);
 }
 

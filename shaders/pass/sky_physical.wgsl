@@ -97,7 +97,7 @@ fn march_level(in: Varying) -> Level {
     let surface = relief_at(pixel);
     let view = sky_view(frame, uv_of(pixel), surface.y);
     // Where several rays would stand for a pixel, nobody asks for its light.
-    let one = sky_alone(sky_spread(body, airs.list[u32(body.ids.z)], view));
+    let one = sky_alone(sky_spread(frame, body, airs.list[u32(body.ids.z)], view));
     let light = sky_light(body, frame.star, view);
     return Level(
         vec4<f32>(to_hdr(light.radiance, exposure.pre), surface.x),

@@ -48,7 +48,7 @@ fn held(in: Varying) -> @location(0) vec4<f32> {
     let pixel = vec2<u32>(in.position.xy);
     let body = bodies.list[sky.ids.x];
     let view = sky_view(frame, in.uv, textureLoad(depth, pixel, 0));
-    let light = sky_mean(body, view, sky_spread(body, airs.list[u32(body.ids.z)], view));
+    let light = sky_mean(body, view, sky_spread(frame, body, airs.list[u32(body.ids.z)], view));
     let place = min(pixel / 2u, textureDimensions(front_radiance) - 1u);
     let before = textureLoad(front_radiance, place, 0).rgb;
     let through = textureLoad(front_transmittance, place, 0).rgb;

@@ -38,6 +38,9 @@ pub fn make(parts: &Parts<'_>) -> Result<Box<dyn Painter>, RenderError> {
     Ok(Box::new(Physical::new(parts)?))
 }
 
+/// The narrower side of a rectangle from which on it is drawn in cells: a disc smaller than that might lie between rays.
+const SMALL_PX: u32 = 48;
+
 /// The pipelines for one kind of air.
 struct Rates {
     /// A march at every pixel.
@@ -162,7 +165,7 @@ impl Painter for Physical {
             None => 2,
             Some(px) => usize::from(px >= WIDE_PX),
         }];
-        if f.scene.force.all {
+        if f.scene.force.all || draw.rect.width.min(draw.rect.height) < SMALL_PX {
             self.chosen = Some(Chosen::Full(rates.full.clone()));
             return;
         }
