@@ -407,8 +407,11 @@ const LUX: f32 = 1e5;
 /// See [`LUX`].
 const EV: f32 = 3.0;
 
+/// Chooses runs of shots, by where on their course shots are and where a transit's contacts are, outer and inner.
+type Runs<'a> = &'a dyn Fn(&[f64], [f64; 2]) -> Vec<Vec<usize>>;
+
 /// [`jump`] of a transit seen from the ground: all passes of a frame, by the places of the moon's shots. The ground, which is black, is not looked at but through its air.
-fn drawn_transit(runs: &dyn Fn(&[f64], [f64; 2]) -> Vec<Vec<usize>>, shots: u32, ratio: f64, miss_m: f64) -> (f64, String) {
+fn drawn_transit(runs: Runs<'_>, shots: u32, ratio: f64, miss_m: f64) -> (f64, String) {
     let gpu = tests::gpu();
     let earth = planet("earth");
     let air = Air::from(earth.medium.clone());
