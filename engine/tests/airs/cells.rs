@@ -23,8 +23,8 @@ fn from_space_too_a_march_at_half_rate_is_within_its_bound() {
 
 #[test]
 fn pixels_of_a_limb_hold_the_mean_over_their_area() {
-    const FINER: usize = 10;
-    let mut stages = [1, FINER as u32].map(|n| Stage::of(SIZE.map(|px| n * px)));
+    const FINER: u32 = 10;
+    let mut stages = [1, FINER].map(|n| Stage::of(SIZE.map(|px| n * px)));
     for distance_m in [7.2e6, 1.2e7, 2.4e7, 1.4e8] {
         let aside = DVec3::new(6.2e6_f64.min(0.4 * distance_m), 0.0, 0.0);
         let centre = aside - DVec3::Z * libm::sqrt(distance_m * distance_m - aside.length_squared());
@@ -34,11 +34,11 @@ fn pixels_of_a_limb_hold_the_mean_over_their_area() {
             scene.camera.size_px = stage.size;
             stage.take(&scene).hdr
         });
-        let mut means = vec![0.0; drawn.len()];
+        let (finer, mut means) = (FINER as usize, vec![0.0; drawn.len()]);
         for (i, light) in fine.iter().enumerate() {
-            let (pixel, wide) = (i / 4, FINER * SIZE[0] as usize);
-            let into = pixel / wide / FINER * SIZE[0] as usize + pixel % wide / FINER;
-            means[4 * into + i % 4] += f64::from(*light) / (FINER * FINER) as f64;
+            let (pixel, wide) = (i / 4, finer * SIZE[0] as usize);
+            let into = pixel / wide / finer * SIZE[0] as usize + pixel % wide / finer;
+            means[4 * into + i % 4] += f64::from(*light) / f64::from(FINER * FINER);
         }
         let pairs = || drawn.iter().map(|d| f64::from(*d)).zip(&means).enumerate().filter(|(i, _)| i % 4 < 3).map(|(_, pair)| pair);
         let brightest = means.iter().fold(0.0_f64, |a, m| a.max(*m));
