@@ -5,6 +5,7 @@
 
 use engine::air::{Layer, Medium, Phase, Profile};
 use engine::gpu::{BackendChoice, Gpu, ShaderLibrary};
+use engine::render::pass::sky::physical::AGREE;
 use engine::render::{OffscreenImage, Renderer, RendererOptions, Target};
 use engine::scene::{AutoOr, Body, Camera, Force, Occluder, Snapshot, Star, Surface};
 use engine::space::relative::{narrow, narrow3};
@@ -135,7 +136,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     for (name, scene) in scenes(size).into_iter().filter(|(n, _)| args.get(2).is_none_or(|o| o == n || o == "all")) {
         if let Some(steps) = args.get(3) {
             let mut drawn = [steps.parse()?, 256].into_iter().map(|n| {
-                renderer.set_sky_steps(n);
+                renderer.set_sky(n, AGREE);
                 let fixed = Snapshot { exposure: AutoOr::Ev100(12.0), ..scene.clone() };
                 renderer.render(&gpu, &fixed, Target::Image(&image), None)?;
                 Ok::<_, Box<dyn Error>>(renderer.read_hdr(&gpu)?.rgba)

@@ -4,6 +4,8 @@
 //! force and the player is told both. Not here: the screen that changes them ([`crate::hud`]).
 
 use crate::input::bindings::Bindings;
+use engine::render::pass::sky::STEPS;
+use engine::render::pass::sky::physical::AGREE;
 use serde::{Deserialize, Serialize};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -23,6 +25,10 @@ pub struct Video {
     pub ui_scale: f32,
     /// Exposure compensation, stops, −5 … 5.
     pub exposure_ev: f32,
+    /// Points on a ray through air, 4 … 96: fewer are faster and err more.
+    pub sky_points: u32,
+    /// How much of its light a pixel of a sky may err that is drawn between rays, 0.0003 … 0.3.
+    pub sky_error: f32,
     /// Wait for the display's refresh.
     pub vsync: bool,
     /// Whole screen.
@@ -31,7 +37,16 @@ pub struct Video {
 
 impl Default for Video {
     fn default() -> Self {
-        Self { render_scale: 1.0, fov_deg: 55.0, ui_scale: 1.0, exposure_ev: 0.0, vsync: true, fullscreen: false }
+        Self {
+            render_scale: 1.0,
+            fov_deg: 55.0,
+            ui_scale: 1.0,
+            exposure_ev: 0.0,
+            sky_points: STEPS,
+            sky_error: AGREE,
+            vsync: true,
+            fullscreen: false,
+        }
     }
 }
 
@@ -133,6 +148,8 @@ impl Settings {
         range("video.fov_deg", v.fov_deg, 20.0, 110.0);
         range("video.ui_scale", f64::from(v.ui_scale), 0.5, 2.5);
         range("video.exposure_ev", f64::from(v.exposure_ev), -5.0, 5.0);
+        range("video.sky_points", f64::from(v.sky_points), 4.0, 96.0);
+        range("video.sky_error", f64::from(v.sky_error), 0.0003, 0.3);
         range("hud.panel_opacity", f64::from(settings.hud.panel_opacity), 0.0, 1.0);
         let s = &settings.sound;
         for (name, volume) in [("master", s.master), ("engine", s.engine), ("wind", s.wind), ("warning", s.warning)] {
@@ -193,6 +210,8 @@ mod tests {
             ("video = 3", "video"),
             ("[video]\nfov_deg = 500.0\nrender_scale = 9.0", "video.fov_deg = 500 (expected 20 … 110)"),
             ("[video]\nfov_deg = nan", "fov_deg"),
+            ("[video]\nsky_points = 1", "video.sky_points = 1 (expected 4 … 96)"),
+            ("[video]\nsky_error = 2.0", "video.sky_error = 2 (expected 0.0003 … 0.3)"),
             ("[vdeo]\n", "vdeo"),
             ("[controls.buttons]\ngear = [\"key:Gg\"]", "`Gg` is not a key"),
             ("[[controls.axes.pitch]]\naxis = \"LeftStickY\"\ncurve = 4.0", "curve = 4"),
@@ -206,7 +225,7 @@ mod tests {
         }
         assert!(!dir.path().join(FILE).exists());
         assert_eq!(std::fs::read_to_string(dir.path().join("settings.broken-1.toml")).unwrap(), "video = 3");
-        assert_eq!(std::fs::read_dir(dir.path()).unwrap().count(), 6);
+        assert_eq!(std::fs::read_dir(dir.path()).unwrap().count(), 8);
     }
 
     #[test]

@@ -161,9 +161,11 @@ impl Renderer {
         Ok(())
     }
 
-    /// Steps of a march through a whole sky, 8 … 256 ([`pass::sky::STEPS`] unless told): time against error in air.
-    pub fn set_sky_steps(&mut self, steps: u32) {
-        self.passes.sky.steps = steps.clamp(8, 256);
+    /// Time against error in air: points of a march through a whole sky, 4 … 256 ([`pass::sky::STEPS`] unless told), and how much of its light a
+    /// pixel may err that is drawn between rays, 0 … 1 ([`pass::sky::physical::AGREE`] unless told).
+    pub fn set_sky(&mut self, points: u32, agree: f32) {
+        self.passes.sky.steps = points.clamp(4, 256);
+        self.passes.sky.agree = agree.clamp(0.0, 1.0);
     }
 
     /// Gives a body its maps; bodies without any are drawn in their mean albedo. `id` is [`crate::scene::Body::id`].

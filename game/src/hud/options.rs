@@ -68,6 +68,12 @@ fn video(ui: &mut Ui, settings: &mut Settings) {
         ui.label("Exposure compensation");
         ui.add(Slider::new(&mut v.exposure_ev, -5.0..=5.0).step_by(0.1).suffix(" EV"));
         ui.end_row();
+        ui.label("Points on a ray through air");
+        ui.add(Slider::new(&mut v.sky_points, 4..=96).step_by(4.0));
+        ui.end_row();
+        ui.label("Error of skies between rays");
+        ui.add(Slider::new(&mut v.sky_error, 0.0003..=0.3).logarithmic(true).custom_formatter(|x, _| format!("{:.2} %", x * 100.0)));
+        ui.end_row();
         ui.label("Size of text and panels");
         ui.add(Slider::new(&mut v.ui_scale, 0.5..=2.5).step_by(0.05).update_while_editing(false));
         ui.end_row();

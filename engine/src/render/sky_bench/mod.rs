@@ -15,7 +15,7 @@ use super::maps::MapStore;
 use super::pass::air_tables::AirBaker;
 use super::pass::eclipse_rings::EclipseRings;
 use super::pass::sky::choose::Rect;
-use super::pass::sky::physical::UNSEEN;
+use super::pass::sky::physical::{AGREE, UNSEEN};
 use super::pass::sky::{Draw, Painter, Parts, paint, painter, picture_layout};
 use super::pass::smooth_body::SmoothBody;
 use super::pass::{baseline_bruneton, baseline_hillaire_sky};
@@ -179,7 +179,7 @@ impl<'a> SkyBench<'a> {
         let rect = Rect::whole(self.targets.size);
         prepared.painter.place(&mut settings, rect);
         if let Model::Physical(_) = prepared.air.model {
-            settings[0][3] = setting.agree.unwrap_or(settings[0][3]);
+            prepared.painter.agree(&mut settings, setting.agree.unwrap_or(AGREE));
             settings[2][0] = white.map_or(0.0, |w| UNSEEN * PRE * w);
         }
         self.uniform.write(&gpu.queue, &SkyUniform { ids: [0, setting.steps, 0, 0], settings });

@@ -44,8 +44,6 @@ use winit::window::{Window, WindowId};
 const LOOK_RAD_PER_PX: f64 = 0.004;
 /// Radians a second that a stick turns the view at full deflection.
 const LOOK_RAD_PER_S: f64 = 1.6;
-/// Steps of the sky's march where a processor draws: half of what a graphics card does.
-const SKY_STEPS_CPU: u32 = 12;
 /// Seconds between a crash and its screen.
 const CRASH_PAUSE_S: f64 = 1.8;
 
@@ -149,9 +147,6 @@ impl App {
         self.pipelines = Some(Job::spawn(move |progress| {
             progress(0.1, "Building pipelines");
             let mut renderer = Renderer::new(&gpu, RendererOptions::default())?;
-            if gpu.info.device_type == wgpu::DeviceType::Cpu {
-                renderer.set_sky_steps(SKY_STEPS_CPU);
-            }
             progress(0.8, "Stars");
             let catalogue = stars.and_then(|path| std::fs::read(path).ok());
             match catalogue.map(|bytes| engine::render::StarCatalogue::parse(&bytes)) {
@@ -427,6 +422,7 @@ impl ApplicationHandler for App {
                 // A processor that draws takes an eighth of the time for a picture of a third of the width; the player may raise it.
                 if canvas.gpu.info.device_type == wgpu::DeviceType::Cpu && !self.opening.data.join(crate::settings::FILE).exists() {
                     self.settings.video.render_scale = 0.35;
+                    (self.settings.video.sky_points, self.settings.video.sky_error) = (4, 0.03);
                     self.hud.notice("No graphics card was found: the picture is drawn at a third of the resolution (Settings > Picture)");
                 }
                 self.canvas = Some(canvas);

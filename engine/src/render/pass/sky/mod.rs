@@ -54,6 +54,10 @@ pub trait Painter: Send {
     fn before(&mut self, f: &mut FrameContext<'_>, draw: &Draw<'_>) {
         let _ = (f, draw);
     }
+    /// Adds how much of its light a pixel may err that is drawn between rays.
+    fn agree(&self, settings: &mut SkySettings, agree: f32) {
+        let _ = (settings, agree);
+    }
     /// Where in the picture it will be drawn, for models whose shader asks.
     fn place(&self, settings: &mut SkySettings, rect: Rect) {
         let _ = (settings, rect);
@@ -204,6 +208,8 @@ pub fn picture_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
 pub struct Sky {
     /// Points of a march on a long stretch of a ray, a multiple of four.
     pub steps: u32,
+    /// How much of its light a pixel may err that is drawn between rays.
+    pub agree: f32,
     picture: wgpu::BindGroupLayout,
     painters: Vec<Box<dyn Painter>>,
     uniforms: Vec<Uniform<SkyUniform>>,
@@ -223,7 +229,17 @@ impl Sky {
         let painters = PAINTERS.iter().map(|make| make(&parts)).collect::<Result<Vec<_>, _>>()?;
         let [uniforms, fronts] =
             [0, 1].map(|_| (0..MAX_AIRS).map(|_| Uniform::new(&gpu.device, "Sky", wgpu::BufferUsages::STORAGE)).collect());
-        Ok(Self { steps: STEPS, picture, painters, uniforms, fronts, chosen: Vec::new(), no_mirror: Mirror::none(gpu), in_aerial: false })
+        Ok(Self {
+            steps: STEPS,
+            agree: physical::AGREE,
+            picture,
+            painters,
+            uniforms,
+            fronts,
+            chosen: Vec::new(),
+            no_mirror: Mirror::none(gpu),
+            in_aerial: false,
+        })
     }
 
     /// Chooses what to draw and why the rest is not; then tells why no model has tables of its own to make.
@@ -314,6 +330,7 @@ impl Sky {
             let holder = choice.held_by.and_then(|by| u32::try_from(by).ok()).filter(|_| matches!(body.surface, Surface::Nothing));
             let ids = [choice.body, self.steps, 0, holder.unwrap_or(0)];
             let mut settings = painter.settings_in(f.scene, body, air);
+            painter.agree(&mut settings, self.agree);
             painter.place(&mut settings, choice.rect);
             uniform.write(&f.gpu.queue, &SkyUniform { ids, settings });
             let targets = f.targets;

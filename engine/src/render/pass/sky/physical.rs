@@ -131,6 +131,9 @@ impl Painter for Physical {
         all[2][0] = UNSEEN;
         all
     }
+    fn agree(&self, settings: &mut SkySettings, agree: f32) {
+        settings[0][3] = agree;
+    }
     fn place(&self, settings: &mut SkySettings, rect: Rect) {
         settings[1] = [rect.left, rect.top, rect.left + rect.width, rect.top + rect.height].map(|n| n as f32);
     }

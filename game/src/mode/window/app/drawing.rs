@@ -73,6 +73,7 @@ impl App {
         let covered = matches!(self.hud.screen, Screen::Map | Screen::Surface);
         let scaled = canvas.scaled(self.settings.video.render_scale);
         let size_px = scaled.as_ref().map_or_else(|| canvas.size(), |(image, _)| image.size);
+        renderer.set_sky(self.settings.video.sky_points, self.settings.video.sky_error);
         let alpha = if self.hud.screen.runs() { self.clock.alpha() } else { 0.0 };
         // The first picture of a flight is a whole one, its ground and its exposure: a sea would else stand for land that is still on its way.
         let adapt_s = self.still.taken.is_some().then(|| bounded(dt_s));
