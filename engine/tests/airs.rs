@@ -406,8 +406,7 @@ fn a_body_that_becomes_a_point_does_not_jump() {
     let bare = light(f64::from(AIR_BELOW_PX) + 0.01, false);
     println!("{small:?}, {large:?}, {bare:?}; of discs: {:?}", [1.2, 2.0, 4.0, 8.0].map(|px| light(px, true)));
     assert!(!small.0 && large.0);
-    // Air before the disc comes in by degrees; at first there is only what it takes of the sunlight on the ground. A disc of a pixel and a half, asked in the
-    // middles of pixels, is a point to a tenth.
+    // Air before the disc comes in by degrees.
     assert!((large.1 / bare.1 - 1.0).abs() < 0.05, "{bare:?}, {large:?}");
-    assert!((large.1 / small.1 - 1.0).abs() < 0.1, "{small:?}, {large:?}");
+    assert!((large.1 / small.1 - 1.0).abs() < 0.05, "{small:?}, {large:?}");
 }

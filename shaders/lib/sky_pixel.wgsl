@@ -180,12 +180,13 @@ fn in_starlight(body: Body, light: AirLight) -> AirLight {
     return AirLight(light.radiance * body.illuminance.rgb, light.transmittance);
 }
 
-// Radii in pixels of a disc that is drawn as a point below (POINT_BELOW_PX of engine/src/render/pass/smooth_body.rs), and of one that has all of its air.
-const SKY_POINT: vec2<f32> = vec2<f32>(0.75, 3.0);
+// Radius in pixels of a disc that has all of its air.
+const SKY_WHOLE: f32 = 3.0;
 
-// A body that is a point shines by its surface alone: what its air makes of it comes in by degrees.
+// A body that is a point shines by its surface alone: what its air makes of it comes in by degrees. Where a disc begins, that makes up for what
+// the air takes of the sunlight on the ground.
 fn sky_presence(frame: Frame, body: Body, air: Air) -> f32 {
-    return smoothstep(SKY_POINT.x, SKY_POINT.y, (air.shape.x + air.shape.y) / max((body.centre.w + body.up.w) * frame.up.w, 1e-30));
+    return smoothstep(0.0, SKY_WHOLE, (air.shape.x + air.shape.y) / max((body.centre.w + body.up.w) * frame.up.w, 1e-30));
 }
 
 // Luminance and transmittance laid over a stored colour.

@@ -137,9 +137,9 @@ mod tests {
         let blurred = cut.blurred(&class, &angles);
         let sum: f64 = blurred.iter().zip(&angles).map(|(v, a)| v * 2.0 * PI * libm::sin(*a) * PI / f64::from(n)).sum();
         assert!((sum - 1.0).abs() < 2e-3, "{sum}");
-        // In the middle by a third, far off hardly: light that the peak turned has gone on as before.
+        // In the middle by two fifths, far off hardly: light that the peak turned has gone on as before.
         let ratio = |i: usize| blurred[i] / phase.value(libm::cos(angles[i]));
-        assert!(ratio(0) < 0.75 && ratio(0) > 0.5 && (ratio(600) - 1.0).abs() < 0.03, "{} {}", ratio(0), ratio(600));
+        assert!(ratio(0) < 0.7 && ratio(0) > 0.5 && (ratio(600) - 1.0).abs() < 0.03, "{} {}", ratio(0), ratio(600));
         let isotropic = Class { phases: vec![(1.0, Phase::Isotropic)], layers: vec![0] };
         let same = Truncated::new(&isotropic).blurred(&isotropic, &angles);
         assert!(same.iter().all(|v| (v * 4.0 * PI - 1.0).abs() < 1e-6));

@@ -29,7 +29,7 @@ use glam::DMat3;
 use wgpu::{BindingResource, TextureUsages, TextureViewDimension};
 
 /// Texels of the transmittance table, as in `shaders/lib/air.wgsl`.
-const TRANSMITTANCE_SIZE: [u32; 2] = [128, 128];
+pub const TRANSMITTANCE_SIZE: [u32; 2] = [128, 128];
 
 /// What of an air a slot holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

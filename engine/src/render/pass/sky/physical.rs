@@ -3,7 +3,7 @@
 //! The march is made at every eighth pixel of every eighth row first. Cells between four of those that are even enough are drawn from them by
 //! cubic interpolation, two triangles each; in the others the march is made at every second pixel, with cells again; what no cell draws is marched
 //! pixel by pixel. Where another world's shadow is so small in the picture that it might lie between rays, and where density jumps, there are
-//! only the rays of every second pixel. A forced frame marches at every pixel: the two differ by the bound that is stated at [`AGREE`].
+//! only the rays of every second pixel; a small disc has a ray at every one. A forced frame marches at every pixel: the two differ by the bound that is stated at [`AGREE`].
 
 use super::choose::Rect;
 use super::{Draw, Painter, PainterKind, Parts, no_settings};
@@ -127,7 +127,7 @@ impl Painter for Physical {
     }
     fn settings(&self, _body: &Body, air: &Air) -> SkySettings {
         let mut all = no_settings();
-        all[0] = vec4(greatest_extinction(&air.medium), AGREE);
+        all[0] = vec4(greatest_extinction(&air.medium), 0.0);
         all[2][0] = UNSEEN;
         all
     }

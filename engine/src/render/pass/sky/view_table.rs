@@ -12,6 +12,7 @@ use crate::gpu::Gpu;
 use crate::gpu::buffer::Uniform;
 use crate::gpu::texture::{Texture, linear_sampler};
 use crate::render::RenderError;
+use crate::render::pass::air_tables::TRANSMITTANCE_SIZE;
 use crate::render::pipeline::{
     compute_pipeline, loaded_entry, sampler_entry, storage_entry, stored_texture_entry, texture_entry, uniform_entry,
 };
@@ -24,8 +25,6 @@ use wgpu::{BindGroupEntry, BindGroupLayoutEntry, BindingResource, TextureFormat,
 
 /// Bodies whose tables are kept while others are drawn: a full table has 128 MiB.
 const KEPT: usize = 4;
-/// Texels of the transmittance table that [`Painter::light_ground`] writes; irradiance has fewer.
-const SUNLIGHT_SIZE: [u32; 2] = [128, 128];
 
 /// A bake: its pipeline and the layout of its one group.
 struct Bake {
@@ -231,7 +230,7 @@ impl Painter for ViewTable {
             (5, TextureView(&tables.ambient.view)),
             (6, Sampler(&self.linear)),
         ];
-        self.daylight.run(gpu, pass, tables, &own, [SUNLIGHT_SIZE[0].div_ceil(8), SUNLIGHT_SIZE[1].div_ceil(8), 1]);
+        self.daylight.run(gpu, pass, tables, &own, [TRANSMITTANCE_SIZE[0].div_ceil(8), TRANSMITTANCE_SIZE[1].div_ceil(8), 1]);
     }
     fn mirror(&self, id: u16) -> Option<&Mirror> {
         self.tables.get(&id).map(|t| &t.mirror)
